@@ -7,9 +7,8 @@
 
 namespace weft {
 
-/// automatic: WEFT_ISA of the environment, else the best of the machine. An instruction
-/// set that the machine or the library (WEFT_ISAS) lacks, or a name that is none, is an
-/// error.
+/// automatic: WEFT_ISA of the environment, else the best of the machine. An instruction set that
+/// the machine or the library (WEFT_ISAS) lacks, or a name that is none, is an error.
 Result<Isa> resolve(Isa wanted);
 
 /// A resolved one.

@@ -1,5 +1,5 @@
-/// The messages of every check of input: one line that names the field, the index and the
-/// value.
+/// The messages of every check of input: one line that names the field, the index and the value of
+/// the input that was refused.
 #pragma once
 
 #include <weft/weft.h>
@@ -12,8 +12,7 @@
 
 namespace weft {
 
-/// Numbers between these have squares, and inverses with squares, of all digits, with a
-/// margin.
+/// Numbers between these have squares, and inverses with squares, of all digits, with a margin.
 inline constexpr double kLeastSquared = 1e-150, kMostSquared = 1e150;
 inline std::string number(double value) {
   char text[32];

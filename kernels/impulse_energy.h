@@ -1,5 +1,5 @@
-/// What the impulses of a substep did to the velocities: those of the position loop brought
-/// D / h (D: by how much they moved a particle), those of the velocity loop the rest.
+/// The effect of the impulses of a substep on velocities: those of the position loop brought D / h
+/// (D: by how much they moved a particle), those of the velocity loop the rest.
 #pragma once
 
 namespace weft::kernels {

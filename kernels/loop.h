@@ -18,7 +18,7 @@ namespace weft::kernels {
 /// nothing left to correct along them (4.4); or never, they are given (velocity loop).
 enum class Directions : std::uint8_t { each, frozen, constant };
 
-/// What one pass over the constraints did.
+/// The work of one pass over the constraints.
 struct Sweep {
   std::int64_t visits = 0;
   std::int64_t corrections = 0;

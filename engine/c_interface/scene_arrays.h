@@ -13,8 +13,7 @@ namespace weft::c_interface {
 weft_scene default_scene();
 Result<SceneDescription> read_scene(const weft_scene* scene);
 
-/// Arrays that a weft_scene points to, beside the lists of its
-/// SceneDescription.
+/// Arrays that a weft_scene points to, beside the lists of its SceneDescription.
 struct SceneArrays {
   std::vector<std::array<std::uint32_t, 2>> constraint_particles;
   std::vector<double> rest_lengths;

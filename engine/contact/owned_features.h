@@ -112,8 +112,7 @@ class OwnedFeatures {
                {corners_a_[k], corners_a_[(k + 1) % 3], corners[j], corners[(j + 1) % 3]}, b);
     }
   }
-  /// Axes at the start of the interval, of any length. A thread has any two directions across
-  /// it.
+  /// Axes at the start of the interval, of any length. A thread has any two directions across it.
   void set_axes() {
     const kernels::Vector x[] = {points_.start(corners_a_[0]), points_.start(corners_a_[1]),
                                  points_.start(corners_a_[2])};

@@ -44,7 +44,7 @@ class Response {
   /// follows.
   template <class Moved>
   void round(const ContactScene& scene, Near& near, Team& team, Moved&& moved);
-  /// The surface that has pushed a particle most in this substep, and its
+  /// The surface that has pushed a particle most in this substep, of all that it touches, and its
   /// normal.
   std::pair<TouchedSurface, kernels::Vector> touched_by(const ContactPoints& points,
                                                         const Near& near, std::uint32_t slot) const;

@@ -20,8 +20,7 @@ double cotangent_against(const Face& triangle, std::size_t side) {
   return dot(u, v) / length(cross(u, v));
 }
 
-/// The mean of two warps, 0 for faces without one. Warps are lines: opposite ones are
-/// alike.
+/// The mean of two warps, 0 for faces without one. Warps are lines: opposite ones are alike.
 Vec3 mean_warp(const Face& one, const Face& two) {
   const double sign = dot(one.warp, two.warp) < 0 ? -1 : 1;
   return unit(area(one) * one.warp + sign * area(two) * two.warp);

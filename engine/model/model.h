@@ -97,8 +97,7 @@ struct MembraneStore {
   }
 };
 
-/// Triangles subject to drag and lift, between slots, and coefficients of the air
-/// (weft.h).
+/// Triangles subject to drag and lift, between slots, and coefficients of the air (weft.h).
 struct AirStore {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   Lists at;                          // per slot: its triangles

@@ -6,8 +6,7 @@
 
 namespace weft {
 
-/// A part is all free particles that constraints between free ones join, directly or
-/// not.
+/// A part is all free particles that constraints between free ones join, directly or not.
 struct Unevenness {
   double ratio = 1;      // of the heaviest particle of a part to its lightest, the largest of all
   double per_metre = 0;  // that ratio over the mean rest length of the part, the largest of all

@@ -23,8 +23,7 @@ Patch middle(Bytes before, Bytes after) {
   return replacement(at, before.size() - at - same, after.subspan(at, after.size() - at - same));
 }
 
-/// Patches of rows of one size. Equal bytes that take less than a patch of their own are in
-/// one.
+/// Patches of rows of one size. Equal bytes that take less than a patch of their own are in one.
 std::vector<Patch> runs(Bytes before, Bytes after) {
   constexpr std::size_t kPatchBytes = 24;
   std::vector<Patch> all;

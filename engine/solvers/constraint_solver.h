@@ -1,4 +1,4 @@
-/// What a step asks of a solver, whichever it is.
+/// The interface of all solvers to a step.
 ///
 ///   sweeps/  the paper's impulse loop: one constraint after the other, on either backend
 ///   yarn/    whole chains of constraints at a time

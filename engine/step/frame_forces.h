@@ -67,8 +67,7 @@ class FrameForces {
     }
     looked_ = begun_;
   }
-  /// Counts work of forces held since the last one began. Pressures are those of here from now
-  /// on.
+  /// Counts work of forces held since the last one began. Pressures are those of here from now on.
   void end_part() {
     const double h = plan_.h * (places_.done() - begun_);
     const kernels::Vectors& beside = presses_ ? s_.pressed.beside : s_.total_force;

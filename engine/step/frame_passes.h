@@ -25,8 +25,7 @@ class FramePasses {
   void begin(double most) { left_ = most; }
   double left() const { return left_; }
   double most_of_substep() const { return local_visit_ * tuning::kMostVisits; }
-  /// The share left for each of the substeps to come, and for the end of the last
-  /// one.
+  /// The share left for each of the substeps to come, and for the end of the last one.
   double share_of_substep(int substeps_left) const {
     return std::clamp(left_ / (substeps_left + 1), 0.0, most_of_substep());
   }

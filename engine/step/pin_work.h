@@ -32,7 +32,7 @@ PinMotion motion_of_pins(const State& s, double h);
 
 /// From (position, velocity) to (solved, next_velocity), J.
 double work_of(const PinMotion& pins, const State& s, double h);
-/// Hits as fast as stray may give free particles that speed: an energy, J, that is
+/// Pins that stray may give that speed to free particles that they hit: an energy, J, that is
 /// accepted.
 double stray_energy(const PinMotion& pins, const State& s);
 

@@ -10,11 +10,11 @@
 /// and e = n + k w, of length sqrt(1 + 2 k g), is normal to the sphere around the same centre that
 /// x is on. This is exact, and has all digits for a sphere of any size; a plane has k = 0.
 ///
-/// Positions are projected onto what they violate. Of the velocity what would violate it further
-/// is taken, relative to the limit, which moves: a rope that becomes taut, a floor without bounce
-/// and without friction. It is taken at the new place. So a particle that stays at its limit moves
-/// by BDF2 of the equations of motion with multipliers for position and velocity (Gear, Leimkuhler
-/// and Gupta, 1985).
+/// Positions are projected onto the limits that they violate. The part of the velocity that would
+/// violate these further is taken, relative to the limit, which moves: a rope that becomes taut, a
+/// floor without bounce and without friction. It is taken at the new place. So a particle that
+/// stays at its limit moves by BDF2 of the equations of motion with multipliers for position and
+/// velocity (Gear, Leimkuhler and Gupta, 1985).
 #pragma once
 
 #include <algorithm>
@@ -44,7 +44,7 @@ struct AnchorMotion {
   }
 };
 
-/// What an anchor demands.
+/// The limits of an anchor.
 struct AnchorLimits {
   double most = 0;       // m; infinite: no limit
   double distance = 0;   // m, of the backstop
@@ -71,7 +71,7 @@ struct Held {
   bool is_at_limit = false;
 };
 
-/// What leads out of a limit along the unit vector is taken.
+/// Takes the part that leads out of a limit along the unit vector.
 inline kernels::Vector without(kernels::Vector v, double outwards, kernels::Vector unit) {
   return v - std::max(0.0, outwards) * unit;
 }

@@ -32,15 +32,15 @@ kernels::Vector weighted_sum(const BendingElement& e, const Places& x) {
 
 inline bool has_three(const BendingElement& e) { return e.slots[2] == e.slots[3]; }
 
-/// The arms of an element tell how it turns: one along it, and one across that. Of four particles
-/// each joins two whose weights have the same sign, so that the arms cross each other. Of three the
-/// first joins the ends, and the other the middle and the particle beside. A yarn by itself has
+/// The arms of an element tell how it turns: one along it, and one across that. With four particles
+/// each joins two whose weights have the same sign, so that the arms cross each other. With three
+/// the first joins the ends, and the other the middle and the particle beside. A yarn by itself has
 /// none, and takes d.
 struct BendingArms {
   kernels::Vector along, across;
 };
-/// Of its particles: the arms join 0 to 1 and 2 to 3, or the ends, 0 and 2. A hinge that is folded
-/// at rest keeps its order.
+/// The order of its particles: the arms join 0 to 1 and 2 to 3, or the ends, 0 and 2. A hinge that
+/// is folded at rest keeps its order.
 inline std::array<std::size_t, 4> order_of_arms(const BendingElement& e) {
   const auto& w = e.weights;
   const auto size = [&](std::size_t k) { return std::abs(w[k]); };
@@ -130,7 +130,7 @@ inline constexpr double kFlattestFold = 0.3;
 struct Hinge {
   kernels::Vector d, edge, across;  // d, P and Q
   kernels::Vector normal;           // n
-  double size;                      // what N is divided by, m
+  double size;                      // m, the divisor of N
   double g;
   bool is_flat;  // its faces lie nearly on each other, and size is kFlattestFold |P| |d|
 };
@@ -148,7 +148,7 @@ Hinge hinge_of(const BendingElement& e, const Places& x) {
   return h;
 }
 
-/// What the particles of an element feel.
+/// The forces on the particles of an element.
 using Pulls = std::array<kernels::Vector, 4>;
 
 /// The fall of the energy of a hinge, times its compliance. The second part, by which the normal

@@ -11,7 +11,7 @@
 /// particle that stays in contact obey BDF2 of the equations of motion with a multiplier each
 /// (Gear, Leimkuhler and Gupta, 1985), as with anchors (anchors.h).
 ///
-/// What was deeper when the substep began comes out slowly, and this has no friction.
+/// A particle that was deeper when the substep began comes out slowly, and without friction.
 #pragma once
 
 #include <algorithm>
@@ -64,9 +64,9 @@ struct BodyMotion {
   Vector velocity_at(Vector x) const { return velocity + cross(spin, x - to.centre); }
 };
 
-/// What is under the surface comes out at the speed kRecovery + depth / kRecoveryTime, but not
-/// faster than kFastestRecovery. By 0.5 m/s what was found late stayed deep for a frame (3 mm, of a
-/// ball at 10 m/s); without a limit cloth 30 cm deep was thrown out at 100 m/s.
+/// A particle under the surface comes out at the speed kRecovery + depth / kRecoveryTime, but not
+/// faster than kFastestRecovery. At 0.5 m/s one that was found late stayed deep for a frame (3 mm,
+/// of a ball at 10 m/s); without a limit cloth 30 cm deep was thrown out at 100 m/s.
 inline constexpr double kRecovery = 0.05, kFastestRecovery = 2;  // m/s
 inline constexpr double kRecoveryTime = 3e-3;                    // s
 
@@ -108,9 +108,9 @@ inline Gap gap_of(const Solid& s, double thickness, Vector y) {
   return s.faces.empty() ? gap_of_capsule(s, thickness, y) : gap_of_faces(s, thickness, y);
 }
 
-/// The face through which the way from y0 to y1 enters the inside of all. Of a way that begins
-/// there it is the face that is nearest to its beginning, where the way leads down from that or
-/// ends inside: what lies on a thin body, by rounding inside, does not leave it by the other side.
+/// The face through which the way from y0 to y1 enters the inside of all. For a way that begins
+/// there it is the face nearest to its beginning, where the way leads down from that or ends
+/// inside: a particle on a thin body, by rounding inside, does not leave it by the other side.
 inline Touch touch_faces(const Solid& s, double thickness, Vector y0, Vector y1) {
   double enters = -1, leaves = std::numeric_limits<double>::infinity();
   const Face* entry = nullptr;
@@ -140,9 +140,9 @@ inline Touch touch_faces(const Solid& s, double thickness, Vector y0, Vector y1)
   return {true, entry->normal, dot(entry->normal, y1) - entry->offset - thickness};
 }
 
-/// Of a way that is as long as a quarter of the capsule is thick the first point under the surface
-/// is looked for: a step by the gap never goes too far. Of shorter ways the end is looked at, and
-/// of those that begin under the surface and lead out.
+/// On a way as long as a quarter of the thickness of the capsule the first point under the surface
+/// is looked for: a step by the gap never goes too far. On shorter ways, and on those that begin
+/// under the surface and lead out, the end is looked at.
 inline Touch touch_capsule(const Solid& s, double thickness, Vector y0, Vector y1) {
   const Gap end = gap_of_capsule(s, thickness, y1);
   const Vector way = y1 - y0;
@@ -172,7 +172,7 @@ inline Touch find_touch(const BodyMotion& body, Vector start, Vector x, double r
   return touch;
 }
 
-/// Of one that is not under the surface, too.
+/// Finds the gap of one that is not under the surface, too.
 inline Touch find_touch_or_gap(const BodyMotion& body, Vector start, Vector x, double radius) {
   Touch touch = find_touch(body, start, x, radius);
   if (touch.is_near) return touch;
@@ -201,7 +201,7 @@ inline Vector slip_of(const BodyMotion& body, Vector start, Vector x) {
   return x - body.to.placed(body.from.from_place(start));
 }
 
-/// What is left of a way by which the start of a substep is moved: it leads no deeper into the
+/// The rest of a way by which the start of a substep is moved: it leads no deeper into the
 /// body.
 inline Vector kept_out(const BodyMotion& body, Vector start, Vector by, double radius) {
   const double thickness = body.thickness + radius;
@@ -224,7 +224,7 @@ struct Yield {
   double presses() const { return kPressed * by; }
 };
 
-/// What contacts of a particle and a body have done in a substep.
+/// The effect of contacts of a particle and a body in a substep.
 struct Grip {
   double pushed = 0, held = 0;     // m: along the normal, without what came out, and by friction
   double stopped = 0, slowed = 0;  // m/s, likewise
@@ -256,7 +256,7 @@ inline double held_share(double along, double may, double& held) {
   return share;
 }
 
-/// What a contact makes of an encounter.
+/// The answer of a contact to an encounter.
 struct Stop {
   double push = 0;       // m, along the normal; 0: nothing touches
   double comes_out = 0;  // m of it, that were deeper when the substep began
@@ -279,7 +279,7 @@ inline Stop stop(const Encounter& e, double friction, double h, Grip& done) {
   return {push, push - stays_out, (1 - held) * l, push * e.normal - held * along};
 }
 
-/// What it makes of the velocity of the point beside the surface.
+/// Its answer to the velocity of the point beside the surface.
 struct Slowed {
   Vector change{};   // m/s
   double taken = 0;  // m/s, along the surface
@@ -313,9 +313,9 @@ inline Gripped grip(const BodyMotion& body, const Touch& touch, Vector start, Ve
   return gripped;
 }
 
-/// What contacts within the cloth have moved in rounds: it is gripped where it came under the
-/// surface, and else follows the body as far as that has pushed too much. touch: its gap and normal
-/// may be those of a particle over the surface.
+/// A particle that contacts within the cloth have moved in rounds: it is gripped where it came
+/// under the surface, and else follows the body as far as that has pushed too much. touch: its gap
+/// and normal may be those of a particle over the surface.
 inline Gripped follow(const BodyMotion& body, const Touch& touch, Vector start, Vector x, Vector v,
                       Grip& done) {
   Gripped gripped = grip(body, touch, start, x, v, done);

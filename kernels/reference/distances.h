@@ -3,7 +3,7 @@
 /// sections 5.1.5 and 5.1.9.)
 ///
 /// Four points a, b, c, d make up a pair: a point and a triangle b c d, or two edges a b and c d.
-/// What leads from the second feature to the first is r, the sum of weight times point.
+/// The vector from the second feature to the first is r, the sum of weight times point.
 #pragma once
 
 #include <algorithm>

@@ -128,11 +128,11 @@ struct MembraneLaw {
   double damping = 0;
   bool is_rope = false;
 
-  /// What the multiplier lacks.
+  /// The lack of the multiplier.
   double lack(double error, double change, double multiplier) const {
     return stiffness * (error + damping * change) - multiplier;
   }
-  /// What is left of the law, a strain.
+  /// The error of the law, a strain.
   double violation(double lack, double multiplier) const {
     if (stiffness == 0) return 0;
     return (is_rope ? std::max(lack, -multiplier) : lack) / stiffness;
@@ -150,7 +150,7 @@ struct MembraneLaw {
   }
 };
 
-/// What the laws of a substep have in common.
+/// The common numbers of the laws of a substep.
 struct MembraneStep {
   double give = 0;     // (b h)^2
   double damping = 0;  // (time constant) / h
@@ -177,7 +177,7 @@ inline double violation(const MembraneElement& e, const MembraneStep& step, cons
 }
 
 /// Visits the laws one after the other. The multipliers of a substep begin at zero. Corner k moves
-/// by -w_k (u_k push.u + v_k push.v), push being what this returns. What is left of a law up to the
+/// by -w_k (u_k push.u + v_k push.v), push being what this returns. The error of a law up to the
 /// strain `left` is left.
 inline Deformation relax(const MembraneElement& e, const MembraneStep& step, double omega,
                          Deformation f, const Deformation& start, MembraneMultipliers& multipliers,

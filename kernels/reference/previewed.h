@@ -1,5 +1,5 @@
-/// The original method as the paper has it (3.2, with the formulation of 4.1). What it keeps of the
-/// particles are the velocities, which impulses change. Whenever it looks at a constraint it
+/// The original method as the paper has it (3.2, with the formulation of 4.1). It keeps the
+/// velocities of the particles, which impulses change. Whenever it looks at a constraint it
 /// computes the previews of both ends anew (integrate.h):
 ///
 ///     p(t+h) = p + h v + h^2/2 a                               (paper eq. 2)

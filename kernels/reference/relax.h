@@ -13,7 +13,7 @@
 
 namespace weft::reference {
 
-/// Who is joined to whom, for anticipation and masks. Immutable; one per model.
+/// The neighbours of constraints, for anticipation and masks. Immutable; one per model.
 struct Topology {
   /// Constraint c in [0, plain) shares a particle p, not a hub, with the constraints
   /// row_constraint[k], k in [row_begin[c], row_begin[c+1]), in ascending order; row_later[c] is
@@ -75,7 +75,7 @@ LoopResult relax_positions(const Relaxation& r, const Topology& topology,
                            const ContactLists& contacts, const Workspace& workspace,
                            const Method& method);
 
-/// The same by the method of previewed.h, whatever `method` says of 4.2 and 4.3. Of scheme paper.
+/// The same by the method of previewed.h, whatever `method` says of 4.2 and 4.3. For scheme paper.
 LoopResult relax_previewed_positions(const Relaxation& r, const Motion& motion, double h,
                                      const Method& method);
 

@@ -16,7 +16,7 @@
 
 namespace weft::reference {
 
-/// What a seam is to do in a substep of h.
+/// The task of a seam in a substep of h.
 struct SeamTask {
   kernels::Vector wanted{};  // m, the way from b to a
   double most = 0;           // kg m, of the multiplier; infinite: no limit

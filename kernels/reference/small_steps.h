@@ -27,8 +27,8 @@ inline void settle(const Flight& f, std::size_t i, double last) {
   if (last > 0) f.v.set(i, f.v[i] + (1 / last) * (f.x[i] - f.predicted[i]));
   f.predicted.set(i, f.x[i]);
 }
-/// Of a substep that is solved but not settled, b h = `last`, with the ratio r to the one before:
-/// how far its velocity is from what the two before it, u and then v_before, lead to,
+/// The departure of a substep that is solved but not settled, b h = `last`, with the ratio r to the
+/// one before: from its velocity to that which the two before it, u and then v_before, lead to,
 ///
 ///     v - v_before - r (v_before - u) = v - v_before - slope (v* - v_before - b h a),
 ///     slope = r / c
@@ -59,11 +59,11 @@ inline void advance(const Flight& f, std::size_t i, kernels::Vector a, double c,
 /// l^2 / L^2 - 1 of the strain l / L - 1.
 inline double squared_strain(double strain) { return 2 * strain + strain * strain; }
 
-/// What of an error exceeds `most`, in either direction.
+/// The part of an error that exceeds `most`, in either direction.
 inline double beyond(double error, double most) { return error - std::clamp(error, -most, most); }
 
 /// Newton's step for C = (l^2 - L^2) / 2 of one constraint, d its vector, relaxed: the impulse over
-/// d, with the mean of l^2 and L^2 for l^2 in the divisor. Of l^2 / L^2 - 1 what is within `left`
+/// d, with the mean of l^2 and L^2 for l^2 in the divisor. The part of l^2 / L^2 - 1 within `left`
 /// is left.
 inline double relaxed_impulse(kernels::Vector d, double rest, double inverse_masses, double omega,
                               double left = 0) {
@@ -87,7 +87,7 @@ struct ConstraintLaw {
   double residual(double error, double change, double multiplier) const {
     return error + damping * change - softness * multiplier;
   }
-  /// What of it breaks the law.
+  /// The part of it that breaks the law.
   double violation(double residual, double multiplier) const {
     return is_rope ? std::max(residual, -softness * multiplier) : residual;
   }
@@ -99,7 +99,7 @@ struct ConstraintLaw {
   }
 };
 
-/// What the laws of a substep have in common.
+/// The common numbers of the laws of a substep.
 struct SpringStep {
   double scale = 0;    // 1 / (b h)^2
   double damping = 0;  // (time constant) / h
@@ -110,7 +110,7 @@ struct SpringStep {
 
 /// relaxed_impulse() for a chain, of all its constraints together: (A + compliance diag A) lambda =
 /// omega C, A = J M^-1 J^T, by elimination. d[k]: from particle k + 1 to particle k; w: one more.
-/// Solved in place: error becomes lambda. Of springs error is l times what is left of the law, and
+/// Solved in place: error becomes lambda. With springs error is l times the error of the law, and
 /// the matrix has also omega l^2 softness on its diagonal.
 struct ChainSystem {
   std::vector<kernels::Vector> d;

@@ -11,7 +11,7 @@ namespace weft::simd {
 inline namespace WEFT_LANES {
 namespace {
 
-/// What leads out along the unit vector is taken.
+/// Takes the part that leads out along the unit vector.
 [[gnu::always_inline]] inline FloatVector without(const FloatVector& v, Floats outwards,
                                                   const FloatVector& unit) {
   return fused(Floats(0.f) - xsimd::max(outwards, Floats(0.f)), unit, v);

@@ -1,4 +1,4 @@
-/// Bending elements of small steps, in lanes. Of particle i, with the weight c_i,
+/// Bending elements of small steps, in lanes. With the weight c_i of particle i,
 ///
 ///     d = sum of c_i x_i = span + c_0 (u_0 - u_2) + c_1 (u_1 - u_2) + c_3 (u_3 - u_2)
 ///
@@ -9,8 +9,8 @@
 ///
 /// or that of a hinge which is folded at rest (kernels/reference/bending.h),
 /// where bent is how d has changed since the start of the substep for one who turns with the
-/// element, as its arms tell (kernels/reference/bending.h). What rounding does to d is a moment,
-/// and to a sum of pulls no more than to these: a stiff cloth is not pushed away by it.
+/// element, as its arms tell (kernels/reference/bending.h). Rounding of d makes a moment, and of a
+/// sum of pulls no more than of these: it does not push a stiff cloth away.
 #pragma once
 
 #include <limits>
@@ -22,7 +22,7 @@ namespace weft::simd {
 inline namespace WEFT_LANES {
 namespace {
 
-/// Of a block's lanes from `lane` on; with arms, the particles beside three as well.
+/// The particles of a block's lanes from `lane` on; with arms, those beside three as well.
 template <bool kFour, bool kArms = false>
 struct BentQuads {
   static constexpr std::size_t kCount = kFour || kArms ? 4 : 3;
@@ -174,7 +174,7 @@ template <bool kFour>
   pull_quad(to, block.slot[2] + lane, Floats(0.f) - others, f);
 }
 
-/// A hinge that is folded at rest (kernels/reference/bending.h). Of one that is not, fold is 0.
+/// A hinge that is folded at rest (kernels/reference/bending.h). The fold of any other is 0.
 struct Hinge {
   FloatVector d, edge, across, normal;
   Floats fold, reciprocal, g;

@@ -1,5 +1,5 @@
-/// What kernels of the linear system of bending read and write (bending_system.h): vectors of four
-/// numbers for each slot, | x y z - |, 64-byte aligned, in float or in double.
+/// Data of the kernels of the linear system of bending (bending_system.h): vectors of four numbers
+/// for each slot, | x y z - |, 64-byte aligned, in float or in double.
 #pragma once
 
 #include <cstddef>

@@ -149,8 +149,8 @@ void solve_vectors_forward(const Front& f, const FrontVectors& v, std::size_t co
   }
 }
 
-/// own = L^-T (D^-1 own), where below is the solution of the rows below. Of four columns at a time
-/// these are subtracted: sums that do not wait for each other.
+/// own = L^-T (D^-1 own), where below is the solution of the rows below. These are subtracted for
+/// four columns at a time: sums that do not wait for each other.
 void solve_vectors_backward(const Front& f, const FrontVectors& v, std::size_t columns,
                             std::size_t rows) {
   const std::size_t triangle = f.stride - f.below;

@@ -16,12 +16,12 @@ namespace weft::simd {
 /// nobody else has.
 struct alignas(64) ContactBlock {
   std::uint32_t point[4][kernels::kLanes];
-  /// Third corners of the faces beside a feature. Of edges: of both faces of the first edge, then
-  /// of the second; where there is no face it is a corner of the edge. Of a triangle: of those
-  /// across its sides; of a border its own third corner, since beyond a border the triangle counts
-  /// as going on.
+  /// Third corners of the faces beside a feature. For edges: those of both faces of the first edge,
+  /// then of the second; where there is no face a corner of the edge. For a triangle: those across
+  /// its sides; at a border its own third corner, since beyond a border the triangle counts as
+  /// going on.
   std::uint32_t beside[4][kernels::kLanes];
-  /// Of a triangle: 1, of borders -1. Of edges, the first: so far off their ends they touch, as a
+  /// For a triangle: 1, at borders -1. For edges, the first: so far off their ends they touch, as a
   /// share of their lengths.
   float towards[3][kernels::kLanes];
   float thickness[kernels::kLanes];  // m
@@ -52,7 +52,7 @@ struct ContactSolve {
 };
 
 struct ContactKernels {
-  /// Of blocks first ... last - 1.
+  /// Freezes blocks first ... last - 1.
   void (*freeze)(const ContactFreeze&, bool edges, std::size_t first, std::size_t last);
   /// Adds what the multipliers move, of these blocks.
   void (*start)(const ContactSolve&, const std::uint32_t* blocks, std::size_t count);
@@ -62,9 +62,9 @@ struct ContactKernels {
   /// also for those that are nearer than their targets.
   void (*find_active)(const ContactSolve&, bool pushing, std::uint16_t* active, std::size_t first,
                       std::size_t last);
-  /// Of triangles first ... last - 1: threads may do others at a time.
+  /// Turns triangles first ... last - 1: threads may do others at a time.
   void (*turn_triangles)(const TriangleTurns&, std::size_t first, std::size_t last);
-  /// Of blocks first ... last - 1: which stars have a triangle that does not face their direction.
+  /// Finds stars in blocks first ... last - 1 with a triangle that does not face their direction.
   void (*find_folded_stars)(const StarFold&, std::size_t first, std::size_t last);
 };
 

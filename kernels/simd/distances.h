@@ -96,7 +96,7 @@ struct FromEdge {
   return is_parallel || (s > least && s < most && t > least && t < most);
 }
 
-/// What points of the two features may come off their ways, at most and together.
+/// The distance that points of the two features may come off their ways, at most and together.
 [[gnu::always_inline]] inline Floats largest_fourths(const float* quads, const PairBlock& pairs,
                                                      bool edges, std::uint32_t lane) {
   const QuadLanes at;
@@ -141,7 +141,7 @@ void measure_pairs(const PairMeasure& measure, bool edges, std::size_t first, st
   }
 }
 
-/// What is past its ends by so much of the length of an edge is so by floats, too.
+/// A place past its ends by so much of the length of an edge is so by floats, too.
 constexpr float kSurelyPast = 1e-3f;
 
 /// Edges that are nearest to each other at an end of one do not touch: their corners do.

@@ -1,4 +1,4 @@
-/// What kernels of the direct solver read and write: fronts of a sparse factorisation.
+/// Data of the kernels of the direct solver: fronts of a sparse factorisation.
 #pragma once
 
 #include <cstddef>

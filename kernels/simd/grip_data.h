@@ -1,4 +1,4 @@
-/// What kernels read and write that hold particles of small steps to anchors and out of bodies.
+/// Data of the kernels that hold particles of small steps to anchors and out of bodies.
 #pragma once
 
 #include <cstdint>
@@ -42,8 +42,8 @@ struct alignas(64) BodyBlock {
   float far[kernels::kLanes];     // m^2: of a motion, beyond which its constraints are looked at
   std::uint32_t place = 0;        // of the first
 };
-/// Of a hull: normal and offset, from the origin of the frame, thickness included, where the body
-/// is as the substep begins and ends.
+/// A face of a hull: normal and offset, from the origin of the frame, thickness included, where the
+/// body is as the substep begins and ends.
 struct BodyFace {
   float from[4], to[4];
 };
@@ -55,7 +55,7 @@ struct BodyFrame {
   float a[3], axis[3];                                // where it begins, and its direction
   float length = 0, radius = 0, taper = 0, lean = 0;  // lean: taper / sqrt(1 - taper^2)
   float short_way = 0;                                // m^2: of ways that are looked at in full
-  float centre_from[3], way[3], turn[9];              // turn: what rotates, less 1, by columns
+  float centre_from[3], way[3], turn[9];              // turn: a rotation, less 1, by columns
   float centre_to[3], velocity[3], spin[3];
   float friction = 0;
 };

@@ -1,6 +1,6 @@
-/// What the kernels compute with, the same for every instruction set: batches, vectors of batches,
-/// and what lanes_sse2.h, lanes_avx2.h, lanes_avx512.h and lanes_neon.h each do in their own way.
-/// They define, always inline and with internal linkage:
+/// Numbers of the kernels, the same for every instruction set: batches, vectors of batches, and the
+/// functions that lanes_sse2.h, lanes_avx2.h, lanes_avx512.h and lanes_neon.h each have in their
+/// own way. They define, always inline and with internal linkage:
 ///
 ///     kFuses                          whether x y + z is rounded once; else it is rounded twice
 ///     fused(x, y, z)                  x y + z, of Floats and of Doubles

@@ -1,4 +1,4 @@
-/// What AVX2 with FMA does in its own way; lanes.h says what each function means.
+/// Functions that AVX2 with FMA has in its own way; lanes.h says what each one means.
 #pragma once
 
 #include "kernels/simd/batches.h"

@@ -1,4 +1,4 @@
-/// What AVX-512 (F, CD, DQ, BW, VL) does in its own way; lanes.h says what each function means.
+/// Functions that AVX-512 (F, CD, DQ, BW, VL) has in its own way; lanes.h says what each one means.
 #pragma once
 
 #include "kernels/simd/batches.h"

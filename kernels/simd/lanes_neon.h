@@ -1,4 +1,4 @@
-/// What NEON of aarch64 does in its own way; lanes.h says what each function means.
+/// Functions that NEON of aarch64 has in its own way; lanes.h says what each one means.
 #pragma once
 
 #include "kernels/simd/batches.h"

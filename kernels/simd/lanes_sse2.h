@@ -1,4 +1,4 @@
-/// What SSE2 does in its own way; lanes.h says what each function means.
+/// Functions that SSE2 has in its own way; lanes.h says what each one means.
 #pragma once
 
 #include "kernels/simd/batches.h"

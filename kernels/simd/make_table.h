@@ -29,7 +29,7 @@ inline namespace WEFT_LANES {
 namespace {
 
 #if defined(__AVX512F__)
-/// Of kernels on a block of yarns: where no more than half of the lanes have one, half a vector is
+/// Kernels on a block of yarns: where no more than half of the lanes have one, half a vector is
 /// enough, which takes less time, and gives the same bits.
 template <auto kKernel, auto kSame, class Result, class... Arguments>
 constexpr auto as_wide_as(Result (*)(const Yarns&, const YarnBlock&, Arguments...)) {

@@ -1,6 +1,6 @@
-/// What positions say of constraints. Strain, | |x_a - x_b| / rest - 1 |, in double, straight from
-/// the positions, as the root of what the squares are to each other: no division. Sums are kept in
-/// kLanes columns whatever the width of a vector, and added in one order: the result does not
+/// Measurements of constraints at positions. Strain, | |x_a - x_b| / rest - 1 |, in double,
+/// straight from the positions, as the root of the ratio of the squares: no division. Sums are kept
+/// in kLanes columns whatever the width of a vector, and added in one order: the result does not
 /// depend on the instruction set. Padding has 1 / rest^2 = 0 and is left out; ropes count their
 /// stretch only.
 ///
@@ -26,7 +26,7 @@ namespace {
   return xsimd::select(inverse > zero, error, zero);
 }
 
-/// Of whole blocks of kLanes. The columns stay in registers.
+/// Measures whole blocks of kLanes. The columns stay in registers.
 template <class Range>
 [[gnu::always_inline]] inline StrainSums sum_strains(const Geometry& g, const Range& range,
                                                      bool rope) {
@@ -93,8 +93,8 @@ double spring_energy_singles(const Geometry& g, const SpringStiffness& s, std::u
   return rope ? sum_energies(g, s, singles, true) : sum_energies(g, s, singles, false);
 }
 
-/// Largest and smallest of what was taken; their order does not matter. What is not finite is
-/// remembered apart: among lanes a maximum may lose it.
+/// Largest and smallest of the numbers taken; their order does not matter. Numbers that are not
+/// finite are remembered apart: among lanes a maximum may lose them.
 struct StretchLanes {
   Doubles least = Doubles(1.), most = Doubles(1.);
   Doubles poison = Doubles(0.);  // 0, or not a number

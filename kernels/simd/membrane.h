@@ -8,8 +8,8 @@
 ///
 /// Each law needs what the one before it made of f, so the laws of one vector of elements are a
 /// long chain of operations that wait for each other. Therefore a visit takes a strip of blocks
-/// through one law after the other: while one vector waits, others are worked on. What a law leaves
-/// for the next one stands in a small buffer.
+/// through one law after the other: while one vector waits, others are worked on. A small buffer
+/// passes values from one law to the next.
 ///
 /// Inverse masses are over W, the larger one of W_uu and W_vv, and multipliers and stiffnesses
 /// times W: so impulses are strains, whatever the masses and the size of a triangle.
@@ -27,7 +27,7 @@ struct DeformationLanes {
   FloatVector u, v;
 };
 
-/// Of a block's lanes from `lane` on, as far as it comes from the quads `from`.
+/// The deformation of a block's lanes from `lane` on, as far as it comes from the quads `from`.
 [[gnu::always_inline]] inline DeformationLanes deformation_from(const float* from,
                                                                 const MembraneBlock& block,
                                                                 std::uint32_t lane) {
@@ -72,7 +72,7 @@ void measure_membrane(const MembraneBlock* blocks, MembraneSpans* spans, const f
   return xsimd::sqrt(fused(f.x, f.x, fused(f.y, f.y, fused(f.z, f.z, tiny))));
 }
 
-/// Of the directions of warp and weft.
+/// The angle between the directions of warp and weft.
 struct AngleLanes {
   Floats uu, uv, vv;  // products of f_u and f_v
   Floats area;        // |f_u|^2 |f_v|^2
@@ -99,7 +99,7 @@ struct MembraneStart {
   }
 };
 
-/// What a strip of blocks has between two laws, at the places of its lanes.
+/// The values of a strip of blocks between two laws, at the places of its lanes.
 struct alignas(64) MembraneStrip {
   static constexpr std::size_t kBlocks = 4;
 
@@ -110,8 +110,8 @@ struct alignas(64) MembraneStrip {
   LaneVectors start[kBlocks];  // MembraneStart
 };
 
-/// A sweep's visits. What they share is loaded once, since it stands apart from the strip, to which
-/// they store.
+/// A sweep's visits. Their common data are loaded once, since these stand apart from the strip, to
+/// which they store.
 template <bool kRope, bool kDamped>
 struct MembraneVisit {
   const Membrane m;

@@ -1,4 +1,4 @@
-/// What kernels read and write that look for what is near: boxes, and pairs of features of meshes.
+/// Data of the kernels that look for near features: boxes, and pairs of features of meshes.
 #pragma once
 
 #include <cstddef>
@@ -17,13 +17,13 @@ struct alignas(64) PairBlock {
 };
 /// The share of a distance in floats that the true one is not below.
 inline constexpr float kSurelyApart = 0.95f;
-/// What is known of pairs when an interval begins.
+/// The known data of pairs when an interval begins.
 struct PairMeasure {
   const PairBlock* pairs = nullptr;
   const float* points = nullptr;  // in quads
   const float* ways = nullptr;    // likewise: that the points are expected to take; the fourth is
                                   // what a point may come off it
-  float reach = 0;                // m: who may come nearer than this, but for that, is near
+  float reach = 0;                // m: a pair that may come nearer than this, but for that, is near
   float beyond = 0;               // of an edge: so far past its ends it may face another one
   float (*distance)[kernels::kLanes] = nullptr;  // written, per block
   std::uint16_t* near = nullptr;                 // written, per block, a bit per lane
@@ -66,7 +66,7 @@ inline constexpr std::size_t kReachLanes = 16;
 struct alignas(64) ReachAxes {
   float x[kReachLanes]{}, y[kReachLanes]{}, z[kReachLanes]{};
 };
-/// What a feature reaches along x, y, z, an unused direction and the four axes: where tubes begin,
+/// The reach of a feature along x, y, z, an unused direction and the four axes: where tubes begin,
 /// and where they end.
 struct alignas(64) FeatureReach {
   float low[kReachLanes], high[kReachLanes];

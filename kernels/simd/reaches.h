@@ -60,7 +60,7 @@ struct EndQuads {
   }
 }
 
-/// What is on one side of the other at both ends is there all of the way.
+/// A feature on one side of the other at both ends is there all of the way.
 [[gnu::always_inline]] inline bool meet(const FeatureReach& a, const FeatureReach& b) {
   std::uint32_t beyond = 0, before = 0;
   for (std::uint32_t lane = 0; lane < kReachLanes; lane += kFloats) {
@@ -86,7 +86,7 @@ void reaches_of_triangle(const ReachAxes& axes, const PointTube* const* tubes,
   for (std::uint32_t k = 0; k < 3; ++k) join(to.corner[k], to.corner[(k + 1) % 3], to.edge[k]);
 }
 
-/// Of two triangles that meet: a bit of TriangleMeeting. corner: of the other one, and `whole`.
+/// A bit of TriangleMeeting for two triangles that meet. corner: of the other one, and `whole`.
 [[gnu::always_inline]] inline bool meet_at(std::uint32_t bit, const TriangleReaches& its,
                                            const FeatureReach (&corner)[3],
                                            const FeatureReach& whole) {

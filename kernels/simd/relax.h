@@ -211,7 +211,7 @@ std::uint32_t relax_run(const BlockRelaxation& r, const Run& run) {
 }
 void relax_runs(const BlockRelaxation& r, const Run* runs, std::size_t count,
                 const std::uint8_t* wanted, std::uint32_t* corrections) {
-  const BlockRelaxation local = r;  // what nothing in here can change, as far as the compiler knows
+  const BlockRelaxation local = r;  // nothing in here can change it, as far as the compiler knows
   for (std::size_t i = 0; i < count; ++i) {
     corrections[i] = 0;
     if (wanted != nullptr && wanted[i] == 0) continue;

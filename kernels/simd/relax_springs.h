@@ -3,8 +3,8 @@
 ///     e = e0 + n . (u_a - u_b) - yield impulse
 ///     if |e| > threshold:  u_a += gain_a e n,  u_b += gain_b e n,  impulse += e
 ///
-/// impulse is the sum of corrections since directions were renewed. What they had come to before
-/// that, `held`, is in e0 already, in double. With s = softness = compliance / h^2
+/// impulse is the sum of corrections since directions were renewed. Their sum before that, `held`,
+/// is in e0 already, in double. With s = softness = compliance / h^2
 ///
 ///     yield = s / (w_a + w_b + s),   gain_a = -tau^2 w_a / (w_a + w_b + s),   gain_b likewise
 ///

@@ -1,5 +1,5 @@
-/// What kernels of small steps read and write: particles in flight, edges, springs, bending
-/// elements and triangles of fabric.
+/// Data of the kernels of small steps: particles in flight, edges, springs, bending elements and
+/// triangles of fabric.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,8 @@ struct Flight {
   bool is_mended() const { return led_to != u; }
 };
 
-/// What is left of a flight between two frames: the velocity in the end, and how it came about in
-/// the last substep.
+/// The past of a flight between two frames: the velocity in the end, and how it came about in the
+/// last substep.
 struct Past {
   float* v = nullptr;
   float* v_before = nullptr;
@@ -67,13 +67,13 @@ struct EdgeRelaxation {
   float left = 0;       // of the same: errors up to here are left, and larger ones taken to it
 };
 
-/// Of an edge block whose constraints may be springs (reference::ConstraintLaw).
+/// The laws of an edge block whose constraints may be springs (reference::ConstraintLaw).
 struct alignas(64) SpringBlock {
   float rest[kernels::kLanes];
   float inverse_masses[kernels::kLanes];  // w_a + w_b
   float compliance[kernels::kLanes];      // m/N
 };
-/// What the laws of a substep have in common (reference::SpringStep, LawStep).
+/// The common numbers of the laws of a substep (reference::SpringStep, LawStep).
 struct SpringLaws {
   const float* u_start = nullptr;  // when the substep began
   float scale = 0;                 // 1 / (b h)^2, 1/s^2
@@ -154,7 +154,7 @@ struct YarnRelaxation {
   float left = 0;                // as above
 };
 
-/// Of yarns whose links may be springs, in quads (small_step_springs.h).
+/// The relaxation of yarns whose links may be springs, in quads (small_step_springs.h).
 struct YarnSpringRelaxation {
   YarnRelaxation yarns;
   float* multiplier = nullptr;  // kg m, per row and lane

@@ -10,7 +10,7 @@
 /// that is, each row divided by 1 + damping, which leaves it symmetric; l_start is the length when
 /// the substep began, and mu the sum of multipliers so far. A rigid link has s = q = 0.
 ///
-/// A sweep leaves what later blocks do to earlier ones. What that breaks of the laws is measured
+/// A sweep leaves the effect of later blocks on earlier ones. Its errors of the laws are measured
 /// when the sweep is over.
 #pragma once
 

@@ -183,7 +183,7 @@ void renew_base(const Flight& flight, float* base, float cell, std::size_t first
       });
 }
 
-/// What of an error exceeds `most`, in either direction.
+/// The part of an error that exceeds `most`, in either direction.
 [[gnu::always_inline]] inline Floats beyond(Floats error, Floats most) {
   return error - xsimd::max(Floats(0.f) - most, xsimd::min(most, error));
 }

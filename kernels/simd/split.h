@@ -82,8 +82,8 @@ void join_quads(kernels::VectorsView x, std::size_t first, std::size_t last, con
   }
 }
 
-/// Fours of a row, kFloats lanes in all. What is nobody's is 0, and what stands beside a row is not
-/// touched: it may be another thread's.
+/// Fours of a row, kFloats lanes in all. Lanes of no particle are 0, and lanes beside a row are not
+/// touched: they may be another thread's.
 struct Fours {
   const WovenRow& row;
   std::uint32_t first;

@@ -1,8 +1,8 @@
-/// What kernels of Gauss-Seidel sweeps read and write: constraints, and displacements of their
+/// Data of the kernels of Gauss-Seidel sweeps: constraints, and displacements of their
 /// particles.
 ///
-/// Precision. Positions and velocities are double. Inside the loop everything is float: what each
-/// slot was displaced by since the directions were last renewed, u, and for each constraint
+/// Precision. Positions and velocities are double. Inside the loop everything is float: the
+/// displacement u of each slot since the directions were last renewed, and for each constraint
 ///
 ///     e = e0 + n . (u_a - u_b)
 ///
@@ -57,7 +57,7 @@ struct alignas(64) ConstraintBlock {
   float gain_a[kernels::kLanes], gain_b[kernels::kLanes];               // tau^2
 };
 
-/// What relaxing a constraint reads and writes.
+/// The data that relaxing a constraint reads and writes.
 struct BlockRelaxation {
   Displacements u;
   ConstraintBlock* blocks = nullptr;
@@ -87,7 +87,7 @@ struct Anticipation {
   float threshold = 1;
 };
 
-/// What renewing directions and measuring strain read.
+/// The data that renewing directions and measuring strain read.
 struct Geometry {
   kernels::VectorsView x;                  // per slot: positions
   const double* rest_length = nullptr;     // per constraint; padding: 1
@@ -121,7 +121,7 @@ struct StrainSums {
   double squares = 0;
 };
 
-/// Of (length / rest)^2; most is infinite where one is not finite.
+/// The range of (length / rest)^2; most is infinite where one is not finite.
 struct StretchRange {
   double least = 1;
   double most = 1;

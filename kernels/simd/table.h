@@ -1,6 +1,6 @@
-/// The vector kernels, one function pointer per stage, one table per instruction set. What they
-/// read and write stands in sweep_data.h, yarn_data.h, front_data.h, small_step_data.h,
-/// bending_data.h, contact_data.h, grip_data.h and nearness_data.h.
+/// The vector kernels, one function pointer per stage, one table per instruction set. Their data
+/// stand in sweep_data.h, yarn_data.h, front_data.h, small_step_data.h, bending_data.h,
+/// contact_data.h, grip_data.h and nearness_data.h.
 #pragma once
 
 #include <cstddef>
@@ -19,8 +19,8 @@
 
 namespace weft::simd {
 
-/// Of contact_data.h; a source of its own for each instruction set. A library has those of its
-/// processor (on_x86_64.cpp, on_aarch64.cpp).
+/// The kernels of contact_data.h; a source of its own for each instruction set. A library has those
+/// of its processor (on_x86_64.cpp, on_aarch64.cpp).
 struct ContactKernels;
 extern const ContactKernels kSse2Contacts, kAvx2Contacts, kAvx512Contacts, kNeonContacts;
 
@@ -30,7 +30,7 @@ struct BendingKernels {
   /// q = A p, of groups of rows first ... last - 1; returns p . q.
   double (*multiply)(const BendingMatrix<Real>&, const Real* p, Real* q, std::size_t first,
                      std::size_t last);
-  /// Of slots first ... last - 1: r -= inertia M guess and p = r / diagonal.
+  /// For slots first ... last - 1: r -= inertia M guess and p = r / diagonal.
   BendingNorms (*begin)(const BendingGradients<Real>&, const Real* mass, Real inertia,
                         std::size_t first, std::size_t last);
   /// Likewise: change += alpha p, or = alpha p, and r -= alpha A p; returns r . r / diagonal.
@@ -117,7 +117,7 @@ struct Table {
                                  std::uint32_t last);
 
   /// base = x in whole cells, a power of two (0: none), rounded to float, u = x - base; and x moved
-  /// to base + u. Of slots first ... last - 1, in quads.
+  /// to base + u. For slots first ... last - 1, in quads.
   void (*split_quads)(kernels::VectorsView x, std::size_t first, std::size_t last, double cell,
                       float* base, float* u);
   void (*join_quads)(kernels::VectorsView x, std::size_t first, std::size_t last, const float* base,
@@ -139,7 +139,7 @@ struct Table {
                       const float* from);
   void (*widen_rows)(kernels::VectorsView x, const WovenRow* rows, std::size_t count,
                      const float* from);
-  // Of yarns. scratch: one row more than the block has; for patches twice that (scratch_rows()).
+  // For yarns. scratch: one row more than the block has; for patches twice that (scratch_rows()).
   /// start = the directions at base + u.
   void (*yarn_keep_start)(const Yarns&, const YarnBlock&, float* u, YarnScratch* scratch);
   /// Solves the yarns of a block.
@@ -184,7 +184,7 @@ struct Table {
   kernels::ImpulseEnergy (*measure_energy_change)(const Motion&, std::size_t first,
                                                   std::size_t last);
   void (*renew_base)(const Flight&, float* base, float cell, std::size_t first, std::size_t last);
-  // Of blocks first ... last - 1.
+  // For blocks first ... last - 1.
   void (*measure_edges)(const EdgeBlock*, EdgeSpans*, const float* base, std::size_t first,
                         std::size_t last);
   void (*relax_distances)(const EdgeRelaxation&, std::size_t first, std::size_t last);
@@ -208,15 +208,15 @@ struct Table {
   void (*judge_membrane)(const Membrane&, float strain, std::uint16_t* out, bool rope,
                          std::size_t first, std::size_t last);
   void (*hold_anchors)(const AnchorHold&, std::size_t first, std::size_t last);
-  /// Of pairs first ... last - 1.
+  /// For pairs first ... last - 1.
   void (*grip_bodies)(const BodyHold&, std::size_t first, std::size_t last);
   /// m, by which the deepest is under a surface; at least 0.
   float (*deepest_in_bodies)(const BodyHold&, std::size_t first, std::size_t last);
-  /// Of blocks first ... last - 1. edges: pairs of edges, else of a point and a triangle.
+  /// For blocks first ... last - 1. edges: pairs of edges, else of a point and a triangle.
   void (*measure_pairs)(const PairMeasure&, bool edges, std::size_t first, std::size_t last);
   void (*touch_pairs)(const PairTouch&, bool edges, std::size_t first, std::size_t last);
   void (*find_moved_pairs)(const PairMoves&, bool edges, std::size_t first, std::size_t last);
-  /// Of blocks first ... last - 1, a bit per lane: which of `of` are at most `limit`.
+  /// For blocks first ... last - 1, a bit per lane: which of `of` are at most `limit`.
   void (*find_small)(const float (*of)[kernels::kLanes], float limit, std::uint16_t* small,
                      std::size_t first, std::size_t last);
   const ContactKernels* contacts = nullptr;
@@ -224,7 +224,7 @@ struct Table {
   std::uint32_t (*find_met)(const BoxCluster&, const float* low, const float* high);
   /// tubes: of its corners.
   void (*reaches_of_triangle)(const ReachAxes&, const PointTube* const* tubes, TriangleReaches&);
-  /// Of `count` other triangles.
+  /// Meets `count` other triangles.
   void (*meet_triangles)(const TriangleMeeting&, std::size_t count);
   /// Scratch as above.
   void (*relax_yarns)(const Yarns&, const YarnBlock&, float* u, YarnScratch* scratch,
@@ -254,7 +254,7 @@ struct Table {
   // The linear system of bending (bending_system.h).
   BendingKernels<float> bend_floats;
   BendingKernels<double> bend_doubles;
-  /// Of slots first ... last - 1: p = z + beta p; a . b.
+  /// For slots first ... last - 1: p = z + beta p; a . b.
   void (*turn_gradients_to)(double* p, const double* z, double beta, std::size_t first,
                             std::size_t last);
   double (*dot_vectors)(const double* a, const double* b, std::size_t first, std::size_t last);
@@ -283,7 +283,7 @@ struct Table {
 /// The isa must be supported.
 const Table& table(Isa isa);
 
-// Of these a library has those of its processor (on_x86_64.cpp, on_aarch64.cpp).
+// A library has those of its processor (on_x86_64.cpp, on_aarch64.cpp).
 extern const Table kSse2Table, kAvx2Table, kAvx512Table, kNeonTable;
 
 }  // namespace weft::simd

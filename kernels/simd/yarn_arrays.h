@@ -78,8 +78,8 @@ struct BaseStep {
   return rows_of_vector<BaseStep>(y.base_step + block.first, rows_of(block), lane);
 }
 
-/// What a sweep keeps of a row between the forward elimination and the back substitution, where y =
-/// r b. Only rows that are not in place keep u.
+/// The data that a sweep keeps of a row between the forward elimination and the back substitution,
+/// where y = r b. Only rows that are not in place keep u.
 struct ScratchRow {
   RowVectors u, n;
   float m[kFloats], y[kFloats];

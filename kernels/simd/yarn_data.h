@@ -1,4 +1,4 @@
-/// What kernels of yarns (yarns.h) read and write: rows, and where they find their particles.
+/// Data of the kernels of yarns (yarns.h): rows, and where they find their particles.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace weft::simd {
 
-/// What a row of a block of yarns (yarns.h) is like: masses of particle k of kLanes yarns, and the
-/// lengths of what joins it to particle k + 1; 0: nothing does.
+/// The kind of a row of a block of yarns (yarns.h): masses of particle k of kLanes yarns, and the
+/// lengths of the links to particle k + 1; 0: there is none.
 struct alignas(64) YarnRow {
   float rest[kernels::kLanes];
   float inverse_mass[kernels::kLanes];
@@ -18,7 +18,7 @@ struct alignas(64) YarnRow {
   float square[kernels::kLanes];      // rest^2; without a constraint so large that no error counts
   float compliance[kernels::kLanes];  // m/N, of springs in small steps; 0: rigid
 };
-/// What the joints of a row give way by, where they may be springs (yarns.h).
+/// The give of the joints of a row, where they may be springs (yarns.h).
 struct alignas(64) YarnSpringRow {
   float softness[kernels::kLanes];  // compliance / h^2; 0: rigid, or nothing
   float shift[kernels::kLanes];     // target - rest
@@ -87,15 +87,15 @@ struct Yarns {
   float* base = nullptr;
   YarnBaseSteps* base_step = nullptr;  // per row: what it remembers of that (yarn_rows.h)
   float cell = 0;                      // that it was split by
-  bool moved = false;                  // what rows remember is not the present base
+  bool moved = false;                  // rows do not remember the present base
   bool from_memory = false;            // positions do not fit the caches
   YarnSpringRow* springs = nullptr;    // per row; null: all joints are rigid
 };
 
-/// What is eliminated: how t changes lengths; errors besides; or these for the last time.
+/// The eliminated numbers: how t changes lengths; errors besides; or these for the last time.
 enum class YarnElimination : std::uint8_t { changes, errors, last };
 
-/// What a watched sweep did to a block, and whether its lengths are good enough now.
+/// The effect of a watched sweep on a block, and whether its lengths are good enough now.
 struct Swept {
   std::uint32_t solves = 0;  // 0: it was left alone
   bool within = true;

@@ -260,7 +260,7 @@ struct RowFactors {
   };
 }
 
-/// What go_up does with the impulses of springs: it adds them to their sums.
+/// go_up adds the impulses of springs to their sums.
 template <bool kSprings>
 [[gnu::always_inline]] inline auto keep_in_sums(const Yarns& y, const YarnBlock& block,
                                                 std::uint32_t lane) {

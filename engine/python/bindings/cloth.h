@@ -9,7 +9,7 @@ namespace weft::python {
 
 using ClothClass = pybind11::class_<HeldCloth>;
 
-/// What moves a cloth from outside: pins, anchors, bodies, changes.
+/// The calls that move a cloth from outside: pins, anchors, bodies, changes.
 void add_cloth_motion(pybind11::module_& m, ClothClass& cloth);
 
 /// Steps in the arena, or in this thread if there is none.

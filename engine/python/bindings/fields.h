@@ -22,7 +22,7 @@ struct Given {
   py::object value;
 };
 
-/// What a value for V has to be, in a message.
+/// The kind of value that V takes, in a message.
 template <class V>
 struct Expected {
   static std::string text() {

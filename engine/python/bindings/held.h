@@ -1,4 +1,4 @@
-/// What Python holds of weft's objects, and who may use it.
+/// The hold of Python on weft's objects, and the rules of their use.
 #pragma once
 
 #include <oneapi/tbb/task_arena.h>

@@ -11,8 +11,8 @@
 /// A second contact of a particle p, with the sphere s' and the normal n', is also a spring while
 /// the first contact, with s and n, holds it. The particle moves along n as s does, so that the
 /// spring acts between the two spheres. Its error is e' - c (e + n . y) + n' . y' with c = n . n',
-/// and its compliance includes the inverse mass w_p (1 - c^2) with which p can give way. What the
-/// rows of p do across n is left to the next iteration.
+/// and its compliance includes the inverse mass w_p (1 - c^2) with which p can give way. The effect
+/// of the rows of p across n is left to the next iteration.
 #pragma once
 
 #include "engine/solvers/direct/direct_factor.h"

@@ -1,4 +1,4 @@
-/// What the direct solver derives from a model: the order in which constraints are eliminated, and
+/// The layout of a model for the direct solver: the order in which constraints are eliminated, and
 /// the places of the values of the matrix and of its factor.
 ///
 ///   rows     the constraints of the matrix, in the order of elimination (minimum degree,

@@ -71,7 +71,7 @@ void measure_links(DirectSystem& s, Judge& takes_part, Read&& read) {
   }
 }
 
-/// Of several contacts of one particle, the deepest is its touch.
+/// The deepest of several contacts of one particle is its touch.
 void add_contact(DirectSystem& s, const Tie& contact) {
   const std::uint32_t p = contact.b;
   if (s.layout.body_of[p] != kNoIndex || s.model.inverse_mass[p] == 0) {

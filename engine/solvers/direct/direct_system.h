@@ -56,7 +56,7 @@ struct DirectSystem {
   /// The length of a constraint at which it has no error: a spring gives way to what its impulse
   /// has come to.
   double target(std::uint32_t index) const;
-  /// What a constraint adds to its diagonal of A: compliance / h^2 of a spring, else 0.
+  /// The part that a constraint adds to its diagonal of A: compliance / h^2 of a spring, else 0.
   double softness(std::uint32_t index) const;
   /// The largest permitted error of a constraint or contact, in m.
   double tolerance(std::uint32_t index) const;

@@ -8,7 +8,7 @@
 namespace weft {
 namespace {
 
-/// Of four numbers. A copy of any count is a call.
+/// Copies four numbers. A copy of any count is a call.
 void copy_vector(const double* from, double* to) { std::memcpy(to, from, 4 * sizeof *to); }
 
 }  // namespace

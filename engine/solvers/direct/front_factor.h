@@ -16,13 +16,13 @@ class FrontFactor {
  public:
   FrontFactor(const DirectFronts& fronts, const simd::Table& kernels);
 
-  /// What a pivot of the column must exceed, or it is taken as infinite; at first 0.
+  /// The number that a pivot of the column must exceed, or it is taken as infinite; at first 0.
   double& least(const DirectFront& front, std::size_t column) {
     return least_[front.column + column];
   }
   /// The value of an entry (DirectFronts::place_of()).
   double& at(std::size_t place) { return lower_[place]; }
-  /// Of each front, in their order: clear(), then its entries are written, then eliminate().
+  /// For each front, in their order: clear(), then its entries are written, then eliminate().
   void clear(std::size_t front);
   void eliminate(std::size_t front);
   /// Replaces b by A^-1 b.

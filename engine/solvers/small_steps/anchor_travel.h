@@ -34,7 +34,7 @@ class AnchorClock {
     substeps_ = substeps;
     done_ = 0;
   }
-  /// Of a substep, in its end.
+  /// Advances by a substep, in its end.
   void advance() { ++done_; }
 
   const AnchorTravel& travel() const { return travel_; }

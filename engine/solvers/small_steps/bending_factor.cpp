@@ -11,7 +11,7 @@
 namespace weft {
 namespace {
 
-/// Of free slots, by their numbers among these.
+/// The neighbours of free slots, by their numbers among these.
 Lists neighbours_of(const BendingRows& rows, const std::vector<std::uint32_t>& slots) {
   std::vector<std::uint32_t> number(rows.slots()), list;
   for (std::uint32_t i = 0; i < slots.size(); ++i) number[slots[i]] = i;

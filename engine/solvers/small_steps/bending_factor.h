@@ -10,7 +10,7 @@
 
 namespace weft {
 
-/// What depends on the pattern of K alone.
+/// Data that depend on the pattern of K alone.
 struct BendingFronts {
   std::vector<std::uint32_t> slots;        // per row, in the order of elimination
   std::vector<std::size_t> entry_begin;    // per front, and the end of the last

@@ -60,7 +60,7 @@ std::optional<BendingStep> BendingFrame::next(double give) {
   return step(give, 0.5 * (solved_in(groups_ + group + 1) - solved_in(groups_ + group - 1)));
 }
 
-/// Of what is not factored. By single substeps: groups change no damping.
+/// The most damping of a matrix that is not factored. By single substeps: groups change no damping.
 double BendingFrame::most_damping() const {
   return tuning::kBendingDamping * std::max(1.0, 1 / (give_ * mean_));
 }

@@ -1,7 +1,7 @@
 /// When and how the bending of a frame is solved (bending_system.h).
 ///
 /// Where all cloth is soft, one solution stands for a group of n substeps, with the impulse of all
-/// of them in its middle. Else n is 1. Of groups of unequal lengths n is half of the way from the
+/// of them in its middle. Else n is 1. For groups of unequal lengths n is half of the way from the
 /// impulse before to the one after: with their own lengths stiffness would change once a frame, and
 /// cloth gains energy from that. In a group the force is that of the law
 ///
@@ -45,16 +45,16 @@ class BendingFrame {
   /// weight: of a frame, the sum of m a^2 over all that bend, of what accelerates them from
   /// outside.
   void begin(const FramePlan& plan, double weight);
-  /// Of the next substep, with its give; nothing where its group is solved in another.
+  /// The step of the next substep, with its give; none where its group is solved in another.
   std::optional<BendingStep> next(double give);
-  /// Of a whole group of substeps as most are.
+  /// The step of a whole group of substeps as most are.
   BendingStep usual() const { return step(give_, longest_); }
 
   bool is_factored() const { return is_factored_; }
   BendingLimits limits() const { return {part_, weight_, tuning::kMostBendingSteps}; }
-  /// 1/s^2. What constraints do after bending may load elements that are stiffer than a substep
-  /// resolves: these have no more energy than the softest that is not resolved has, of substeps
-  /// that a sweep gives by `give` in, (b h)^2 / omega.
+  /// 1/s^2. Constraints after bending may load elements that are stiffer than a substep resolves:
+  /// these have no more energy than the softest that is not resolved, in substeps with the `give`
+  /// of a sweep, (b h)^2 / omega.
   double resolved(double give) const { return 1 / ((1 - 0.5 * omega_) * give); }
   /// 1/s^2. The same of the part of a fold that its normal turns by, which no solution knows.
   double resolved_turning(double give) const { return tuning::kResolvedTurning * resolved(give); }

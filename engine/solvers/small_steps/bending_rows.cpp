@@ -79,9 +79,9 @@ void narrow(const BendingValues<double>& from, BendingValues<float>& to) {
   narrow(from.diagonal, to.diagonal);
 }
 
-/// Of M^-1/2 K M^-1/2 = B. For positive x no swing is stiffer than the largest (|B| x)_i / x_i,
-/// which falls from the largest sum of a row as x becomes |B| x (Collatz, Wielandt): one light
-/// particle has stiff rows beside it, and a swing that is not as stiff.
+/// The largest stiffness of M^-1/2 K M^-1/2 = B. For positive x no swing is stiffer than the
+/// largest (|B| x)_i / x_i, which falls from the largest sum of a row as x becomes |B| x (Collatz,
+/// Wielandt): one light particle has stiff rows beside it, and a swing that is not as stiff.
 double largest_stiffness(const BendingRows& rows) {
   constexpr int kTimes = 16;
   std::vector<double> root(rows.slots()), x(rows.slots(), 1.0), next(rows.slots(), 1.0);

@@ -15,7 +15,7 @@ namespace weft {
 
 class Model;
 
-/// Of A = inertia M + stiffness K: 1/s^2, and a factor.
+/// The law A = inertia M + stiffness K: 1/s^2, and a factor.
 struct BendingLaw {
   double inertia = 0, stiffness = 1;
   friend bool operator==(const BendingLaw&, const BendingLaw&) = default;

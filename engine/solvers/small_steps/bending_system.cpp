@@ -54,7 +54,7 @@ void BendingSystem<Real>::for_slots(Team& team, Work&& work) const {
   team.for_each_part(rows_.slots(), kSlotsOfSum, work);
 }
 
-/// Of what work(first, last) returns for the slots of each range, in one order.
+/// The sum of work(first, last) over the slots of each range, in one order.
 template <class Real>
 template <class Result, class Work>
 Result BendingSystem<Real>::sum(Team& team, std::vector<Result>& parts, Work&& work) const {

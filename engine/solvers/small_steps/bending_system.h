@@ -43,7 +43,7 @@ class BendingSystem {
  public:
   BendingSystem(const BendingRows& rows, const simd::Table& table);
 
-  /// What a solution needs. Else the first preparation does it.
+  /// Allocates the memory of a solution. Else the first preparation does it.
   void allocate();
   /// Solutions by this law, or nearly so, are to come.
   void prepare_diagonal(const BendingLaw& law);
@@ -51,7 +51,7 @@ class BendingSystem {
   void prepare_factor(const BendingFronts& fronts, const BendingLaw& law,
                       bool exactly) requires std::is_same_v<Real, double>;
 
-  /// Of the last solution, or 0 of none.
+  /// The last solution, or 0 if there is none.
   Real* guess() { return guess_.data(); }
   void forget_guess() { std::ranges::fill(guess_, Real{0}); }
   /// b - stiffness K guess, to be written before a solution; in its end what is left.
@@ -66,7 +66,7 @@ class BendingSystem {
   std::size_t bytes() const;
 
  private:
-  /// p. What a product reads before it and after it is 0.
+  /// p. Numbers that a product reads before it and after it are 0.
   Real* direction() { return direction_.data() + kAround; }
   simd::BendingGradients<Real> gradients();
   template <class Result, class Work>

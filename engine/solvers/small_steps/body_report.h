@@ -1,4 +1,4 @@
-/// What contacts with bodies did in a frame.
+/// The effects of contacts with bodies in a frame.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-/// What both solvers of small steps tell of contacts.
+/// The contacts that both stores of small steps report.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ inline BodyTouch touch_of(const BodyClock& clock, std::size_t body, std::uint32_
   return {slot, clock.bodies()[body].id, push, x - gap.gap * normal, normal};
 }
 
-/// Of several bodies of a closed form the one that is nearest to x.
+/// The one of several bodies of a closed form that is nearest to x.
 class NearestForm {
  public:
   void consider(const BodyClock& clock, std::uint32_t body, kernels::Vector x) {

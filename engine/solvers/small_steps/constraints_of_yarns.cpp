@@ -31,8 +31,8 @@ std::vector<double> least_compliances(const Model& model) {
   return least;
 }
 
-/// Two families hold a sheet in its plane. What is much softer than they are and belongs to neither
-/// is left out.
+/// Two families hold a sheet in its plane. Constraints that are much softer and belong to neither
+/// are left out.
 std::vector<std::uint32_t> those_that_carry(const Model& model, const WovenYarns& yarns) {
   const ConstraintStore& s = model.constraints;
   const std::vector<double> least = least_compliances(model);

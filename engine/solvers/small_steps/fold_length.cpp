@@ -12,7 +12,7 @@
 namespace weft {
 namespace {
 
-/// Of half the angle at rest, if its faces are as long as now.
+/// The sine of half the angle at rest, if its faces are as long as now.
 double sine_of(const reference::BendingElement& e, kernels::VectorsView x) {
   const kernels::Vector edge = x[e.slots[1]] - x[e.slots[0]];
   const double along = length(edge);

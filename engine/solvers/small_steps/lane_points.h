@@ -97,7 +97,7 @@ struct LanePoints {
     return {velocity(x), velocity(y), velocity(z)};
   }
   void move_to(std::uint32_t slot, kernels::Vector position) const { put_place(u, slot, position); }
-  /// What has stopped it is no motion: it is predicted to be where it is.
+  /// Its stop by contacts is no motion: it is predicted to be where it is.
   void put(std::uint32_t slot, kernels::Vector position, kernels::Vector velocity) const {
     std::size_t at = places.of(slot);
     for (const auto& [to, speed] :

@@ -70,7 +70,7 @@ void LaneStore::for_floats(Team& team, Work&& work) {
   team.for_each_part(layout_.floats, kPart, work);
 }
 
-/// Of work that ends a substep: the largest departure of its floats, if it had not ended before.
+/// The largest departure of the floats of work that ends a substep, if it had not ended before.
 template <class Work>
 std::optional<double> LaneStore::settle_floats(Team& team, Work&& work) {
   for_floats(team, [&](std::size_t first, std::size_t last) {
@@ -205,7 +205,7 @@ std::optional<double> LaneStore::predict(Team& team) {
   return largest;
 }
 
-/// Of all velocities but those of pins.
+/// The decay of all velocities but those of pins.
 void LaneStore::decay(double to, Team& team) {
   const auto left = static_cast<float>(to);
   for_floats(team, [&](std::size_t first, std::size_t last) {

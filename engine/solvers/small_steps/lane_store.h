@@ -1,8 +1,8 @@
 /// The particles of small steps in lanes: in double, reference_store.h.
 ///
 /// A sweep goes over blocks, yarns that are solved exactly and single constraints, along directions
-/// that are renewed as it goes (kernels/simd/small_steps.h, small_step_yarns.h). What it leaves of
-/// a load is a strain that falls with the square of the substep (small_steps_load.h): the number of
+/// that are renewed as it goes (kernels/simd/small_steps.h, small_step_yarns.h). The rest of a load
+/// is a strain that falls with the square of the substep (small_steps_load.h): the number of
 /// substeps is chosen so that few constraints are left to local passes. A substep's length must not
 /// change much: a strain is a loaded spring, which a shorter step stiffens.
 #pragma once
@@ -22,7 +22,7 @@
 
 namespace weft {
 
-/// What is left of a flight between two frames, in the layout of the solver.
+/// The past of a flight between two frames, in the layout of the solver.
 struct SmallStepsPast {
   double h = 0;           // of the last substep; 0: there was none
   int since_renewal = 0;  // substeps with the present base
@@ -57,11 +57,11 @@ class LaneStore {
   // The beginning of a frame, in this order.
   void begin(kernels::VectorsView x, kernels::VectorsView v, const FramePlan& plan, Team& team);
   void accelerate(kernels::Vector gravity, kernels::VectorsView force);
-  /// Of a frame with these accelerations.
+  /// Begins the bending of a frame with these accelerations.
   void begin_bending(const FramePlan& plan);
   void begin_past(Team& team);
 
-  // The prediction of a substep, by Substep::next_formula. What ends the last one returns the
+  // The prediction of a substep, by Substep::next_formula. The end of the last one returns the
   // largest component of its departures (m/s^2), if that was asked for and it had not ended before.
   void renew_base(Team& team);
   std::optional<double> settle(bool measures, Team& team);
@@ -80,7 +80,7 @@ class LaneStore {
   void judge_springs(Team& team);
   void judge_membrane(Team& team);
   std::int64_t count_out() const { return links_.count_out() + membrane_.count_out(); }
-  /// Of items (local_passes.h).
+  /// Calls work for each of the items (local_passes.h).
   template <class Work>
   void for_each_out(Work&& work) const {
     links_.for_each_out(work);

@@ -10,7 +10,7 @@
 
 namespace weft {
 
-/// Of the last frame that was kept.
+/// The past of the last frame that was kept.
 SmallStepsPast LaneStore::last_past() const {
   SmallStepsPast past = past_;
   if (!is_new_) past.base = base_;

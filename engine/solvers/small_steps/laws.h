@@ -15,7 +15,7 @@
 
 namespace weft {
 
-/// What laws have in common in a substep.
+/// The common numbers of all laws in a substep.
 struct LawStep {
   reference::SpringStep springs{};
   double softest = std::numeric_limits<double>::infinity();  // m/N; softer springs are left

@@ -55,7 +55,7 @@ void Linkage::take(std::uint32_t c, kernels::Vector d, double left, double toler
   if ((is_rope(c) ? error : std::abs(error)) > most) out_.push_back(c);
 }
 
-/// What is left of a slack rope is its own.
+/// The residual of a slack rope is its own.
 void Linkage::solve_once() {
   double* values = values_.data();
   std::ranges::fill(values_, 0);

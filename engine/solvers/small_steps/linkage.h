@@ -79,7 +79,7 @@ class Linkage {
   std::size_t slots() const { return layout_.slots.size(); }
   /// Constraints that the last sweep found out of tolerance.
   const std::vector<std::uint32_t>& out() const { return out_; }
-  /// Of a constraint, since the substep began: lambda.
+  /// lambda of a constraint, since the substep began.
   double impulse(std::size_t constraint) const { return impulse_[constraint]; }
   std::size_t bytes() const;
 

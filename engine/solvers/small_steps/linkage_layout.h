@@ -35,7 +35,7 @@ struct LinkageLayout {
   std::size_t bytes() const;
 };
 
-/// Of all constraints of a model that is_linkage(); empty of any other model.
+/// The layout of all constraints of a model that is_linkage(); empty for any other model.
 LinkageLayout make_linkage_layout(const Model& model);
 
 /// Whether few constraints close a loop: chains, trees, bridges (a third do; of a grid half do).

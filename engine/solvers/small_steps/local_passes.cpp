@@ -37,7 +37,7 @@ void LocalPasses::forget() {
   waiting_.clear();
 }
 
-/// What was asked for is done now; now_ is empty.
+/// The items that were asked for are done now; now_ is empty.
 void LocalPasses::begin_pass() {
   present_.swap(waiting_);
   now_.swap(next_);

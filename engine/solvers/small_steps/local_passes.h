@@ -21,7 +21,7 @@
 
 namespace weft {
 
-/// Of a run, for reports and bounds.
+/// The work of a run, for reports and bounds.
 struct LocalWork {
   std::int64_t visits = 0, corrections = 0;
   bool done = true;  // nothing that was looked at is out of tolerance
@@ -50,7 +50,7 @@ class LocalPasses {
     for (const End& end : items_.ends(item)) look_at(end.slot);
   }
   void look_everywhere();
-  /// Of what was asked for, and not done: where a step was broken off.
+  /// Forgets items that were asked for and not done: where a step was broken off.
   void forget();
 
   /// points: difference(a, b), the vector from slot b to slot a; move(slot, by), of a constraint;

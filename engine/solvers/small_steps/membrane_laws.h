@@ -46,7 +46,7 @@ double violation_of_element(const MembraneStore& s, const Points& points, const 
   return violation(s.element[i], step, look.now, look.start, points.membrane_multipliers(i));
 }
 
-/// Of all elements.
+/// The largest error of all elements.
 template <class Points>
 double largest_violation(const MembraneStore& s, const Points& points, const LawStep& laws) {
   double most = 0;

@@ -17,7 +17,7 @@ struct ParticleAtHand {
 
   /// rate: by which velocities settle.
   kernels::Vector settled(double rate) const { return v + rate * (led_to - predicted); }
-  /// What has stopped it is no motion: it is predicted to be where it is.
+  /// Its stop by contacts is no motion: it is predicted to be where it is.
   void stop(const ContactParticle& at) {
     clear -= longest(at.x - x) + longest(at.start - start);
     x = at.x;

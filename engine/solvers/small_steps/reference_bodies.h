@@ -21,7 +21,7 @@ class ReferenceBodies {
   using Touching = std::vector<bool>;  // per slot
 
   bool empty() const { return clock_.bodies().empty() && meshes_.empty(); }
-  /// before: who touched a body when the frame before ended; empty: nothing is known of it.
+  /// before: particles that touched a body when the last frame ended; empty: that is not known.
   /// misplaced: likewise, by meshes; start: whether it is to be found anew.
   void begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands,
              const Touching& before, ContactStart start, const Misplaced& misplaced,
@@ -70,7 +70,7 @@ class ReferenceBodies {
   void load_of_mesh(const TouchedSurface& surface, kernels::Vector x, kernels::Vector impulse) {
     meshes_.load(surface, clock_, x, impulse);
   }
-  /// Of bodies of a closed form beside the particle the nearest one's surface, and its normal.
+  /// The surface and the normal of the nearest body of a closed form beside the particle.
   std::pair<TouchedSurface, kernels::Vector> nearest_surface(std::uint32_t slot,
                                                              kernels::Vector x) const;
   /// impulse: as add_arrival (body_touches.h) has it.

@@ -110,7 +110,7 @@ void ReferenceStore::begin_past(Team&) {
   }
 }
 
-/// Of the last substep, if velocities are not settled yet.
+/// The departure of the last substep, if velocities are not settled yet.
 std::optional<double> ReferenceStore::departure() {
   if (last_ == 0) return {};
   double largest = 0;
@@ -133,7 +133,7 @@ std::optional<double> ReferenceStore::predict(Team&) {
   return largest;
 }
 
-/// Of all velocities but those of pins.
+/// The decay of all velocities but those of pins.
 void ReferenceStore::decay(double to, Team&) {
   for (std::size_t i = 0; i < model_.slots(); ++i) {
     if (!now_.is_free(i)) continue;
@@ -142,8 +142,8 @@ void ReferenceStore::decay(double to, Team&) {
   }
 }
 
-/// Of all elements at once. Particles go where the last force of bending takes them, and from there
-/// to where they bend to; what is folded at rest begins at the prediction (simd_bending.cpp).
+/// Bends all elements at once. Particles go where the last force of bending takes them, and from
+/// there to where they bend to; hinges folded at rest begin at the prediction (simd_bending.cpp).
 void ReferenceStore::bend(Team& team) {
   const std::optional<BendingStep> step = bending_frame_.next(now_.formula.give(now_.h));
   if (!step) return;

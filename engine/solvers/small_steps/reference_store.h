@@ -44,7 +44,7 @@ class ReferenceStore {
 
   void begin(kernels::VectorsView x, kernels::VectorsView v, const FramePlan& plan, Team& team);
   void accelerate(kernels::Vector gravity, kernels::VectorsView force);
-  /// Of a frame with these accelerations.
+  /// Begins the bending of a frame with these accelerations.
   void begin_bending(const FramePlan& plan);
   void begin_past(Team& team);
   void renew_base(Team&) {}
@@ -73,7 +73,7 @@ class ReferenceStore {
   void judge_springs(Team& team);
   void judge_membrane(Team& team);
   std::int64_t count_out() const { return std::ssize(out_); }
-  /// Of items (local_passes.h).
+  /// Calls work for each of the items (local_passes.h).
   template <class Work>
   void for_each_out(Work&& work) const {
     for (const std::uint32_t item : out_) work(item);
@@ -121,7 +121,7 @@ class ReferenceStore {
     element.beside = layout_.bending.beside[i];
     return element;
   }
-  /// Of l^2 / rest^2 - 1.
+  /// Relaxes the errors l^2 / rest^2 - 1.
   void relax_chain(std::span<const std::uint32_t> slots, std::span<const std::uint32_t> links,
                    const Relaxation& by);
   void relax_spring_chain(std::span<const std::uint32_t> slots,
@@ -173,7 +173,7 @@ struct ReferenceStore::Points {
     return v[slot] + rate * (led_to[slot] - predicted[slot]);
   }
   void move_to(std::uint32_t slot, kernels::Vector position) const { x.set(slot, position); }
-  /// What has stopped it is no motion: it is predicted to be where it is.
+  /// Its stop by contacts is no motion: it is predicted to be where it is.
   void put(std::uint32_t slot, kernels::Vector position, kernels::Vector velocity) const {
     x.set(slot, position);
     predicted.set(slot, led_to[slot]);

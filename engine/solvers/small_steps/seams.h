@@ -13,7 +13,7 @@
 
 namespace weft {
 
-/// What becomes of a seam as a cloth moves.
+/// The state of a seam as a cloth moves.
 struct SeamState {
   double speed = 0;  // m/s, at which it closes
   double left = 0;   // s, of its time

@@ -75,7 +75,7 @@ void SimdAnchors::begin(const AnchorTravel& travel, double h, int substeps,
   write_backstops();
 }
 
-/// Where a substep ends. What has no backstop any more has it out of reach.
+/// Where a substep ends. Anchors that have lost their backstop have it out of reach.
 void SimdAnchors::write_limits() {
   for_each_anchor(layout_, [&](std::size_t i, std::uint32_t anchor) {
     const reference::AnchorLimits limits = clock_.limits(anchor);

@@ -18,7 +18,7 @@ class SimdAnchors {
  public:
   SimdAnchors(const Model& model, const Settings& settings, const simd::Table& table);
 
-  /// Who was at a limit when the last substep of a frame ended, per block.
+  /// The particles at a limit when the last substep of a frame ended, per block.
   using AtLimit = std::vector<std::uint16_t>;
 
   bool empty() const { return layout_.empty(); }
@@ -26,9 +26,9 @@ class SimdAnchors {
   /// before: of the frame before; empty: nothing is known of it.
   void begin(const AnchorTravel& travel, double h, int substeps,
              std::span<const std::uint16_t> before);
-  /// Of a new base.
+  /// Measures a new base.
   void measure_base(const float* base);
-  /// Of a substep.
+  /// Advances by a substep.
   void advance();
   /// After a sweep; v settles by `rate`.
   void hold(const simd::Flight& flight, float rate, Team& team);

@@ -15,10 +15,10 @@ class SimdBending {
  public:
   SimdBending(const Model& model, const Settings& settings, const simd::Table& table);
 
-  /// Of a frame with these accelerations of particles. goes_on: its substeps are as long as that
-  /// before it.
+  /// Begins a frame with these accelerations of particles. goes_on: its substeps are as long as
+  /// that before it.
   void begin(const FramePlan& plan, const float* acceleration, bool goes_on);
-  /// Of a new base.
+  /// Measures a new base.
   void measure_base(const float* base, Team& team);
   /// After the prediction of a substep whose positions move by give w f. start: where it began.
   void bend(float* u, const float* start, double give, Team& team);

@@ -95,9 +95,9 @@ void SimdBodies::advance(const simd::Flight& flight, const float* base, double p
   share_room(particles);
 }
 
-/// To particles that touched a body when the last substep ended. What bodies of a closed form yield
-/// to any particle is for lanes, too. Where it has its share no body pushes it: it touches them all
-/// the same, and has its share in the next substep.
+/// To particles that touched a body when the last substep ended. Yields of bodies of a closed form
+/// to any particle are for lanes, too. Where it has its share no body pushes it: it touches them
+/// all the same, and has its share in the next substep.
 void SimdBodies::share_room(ContactParticles& particles) {
   share_among_forms(particles, before_, SubstepMoment::start);
   if (pairs_.empty()) return;
@@ -203,7 +203,7 @@ void SimdBodies::search(const simd::Flight& flight, const float* base) {
   const double share = static_cast<double>(substeps) * h_;
   Vector sum{};
   extents_.clear();
-  // What a body or the fabric takes along becomes as fast as that, whatever its own way was.
+  // A body or the fabric makes a particle that it takes along as fast as itself.
   double longest = 0;
   for (std::size_t body = 0; body < boxes.size(); ++body)
     longest = std::max(longest, share * clock_.fastest(body));

@@ -31,7 +31,7 @@ class SimdBodies {
         table_(table),
         meshes_(model, table, room_) {}
 
-  /// Who touched a body when the last substep of a frame ended, per block.
+  /// The particles that touched a body when the last substep of a frame ended, per block.
   using Touching = std::vector<std::uint16_t>;
 
   bool empty() const { return clock_.bodies().empty() && meshes_.empty(); }
@@ -42,7 +42,7 @@ class SimdBodies {
   void begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands,
              std::span<const std::uint16_t> before, ContactStart start, const Misplaced& misplaced,
              const ContactMemory* contacts);
-  /// Of a substep, whose flights are predicted. part: of h, by the scheme.
+  /// Advances by a substep, whose flights are predicted. part: of h, by the scheme.
   void advance(const simd::Flight& flight, const float* base, double part,
                ContactParticles& particles, Team& team);
   /// Before the next substep, or after the last: verifies contacts with meshes where their interval
@@ -73,7 +73,7 @@ class SimdBodies {
   }
   /// m, by which one particle, and its start, may be moved before it can touch one.
   double clear_of(std::uint32_t slot, kernels::Vector start, kernels::Vector x) const;
-  /// Of one particle. Returns the surface that it touches, the last of several, if there is one.
+  /// Holds one particle. Returns the surface that it touches, the last of several, if there is one.
   TouchedSurface hold(std::uint32_t slot, ContactParticle& particle);
   /// The same of one that contacts within the cloth have moved (reference::follow).
   TouchedSurface follow(std::uint32_t slot, ContactParticle& particle);
@@ -91,7 +91,7 @@ class SimdBodies {
   void load_of_mesh(const TouchedSurface& surface, kernels::Vector x, kernels::Vector impulse) {
     meshes_.load(surface, clock_, x, impulse);
   }
-  /// Of bodies of a closed form beside the particle the nearest one's surface, and its normal.
+  /// The surface and the normal of the nearest body of a closed form beside the particle.
   std::pair<TouchedSurface, kernels::Vector> nearest_surface(std::uint32_t slot,
                                                              kernels::Vector x) const;
   /// arrived(slot): it touches a body, and did not when the last substep ended. moved(slot):
@@ -108,7 +108,7 @@ class SimdBodies {
   /// put the cloth right may have moved it farther than the last search expected.
   double deepest(const simd::Flight& flight, const float* base, ContactParticles& particles,
                  Team& team);
-  /// What was done in the frame.
+  /// Adds the effects of the frame.
   void sum(BodyReport& report);
   void read_contacts(const ContactParticles& particles, std::vector<BodyTouch>& contacts) const;
   std::size_t bytes() const;

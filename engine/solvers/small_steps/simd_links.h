@@ -32,7 +32,7 @@ class SimdLinks {
  public:
   SimdLinks(const Model& model, const Settings& settings, const simd::Table& table);
 
-  /// Of a new base.
+  /// Measures a new base.
   void measure_base(const float* base, Team& team);
   /// Solves yarns, family by family, and calls after() for each family.
   template <class After>
@@ -55,7 +55,7 @@ class SimdLinks {
     for_each_lane(yarns_out_, layout_.yarns.constraint, work);
   }
 
-  /// What the lanes count as out of tolerance, of length^2 / rest^2 - 1.
+  /// The largest length^2 / rest^2 - 1 within tolerance, for the lanes.
   float squared_tolerance() const;
   static float squared(double strain) {
     return static_cast<float>(reference::squared_strain(strain));

@@ -16,7 +16,7 @@ class SimdMembrane {
  public:
   SimdMembrane(const Model& model, const simd::Table& table);
 
-  /// Of a new base.
+  /// Measures a new base.
   void measure_base(const float* base, Team& team);
   /// u_start: when the substep began. continues: the substep has been swept before.
   void relax(float* u, const float* u_start, const LawStep& laws, double omega, bool continues,
@@ -45,7 +45,7 @@ class SimdMembrane {
   /// work(is rope, first, last) over the blocks, batch by batch.
   template <class Work>
   void for_blocks(Team& team, Work&& work) const;
-  /// Of the first law; the next ones are kLanes apart.
+  /// The place of the first law; the next ones are kLanes apart.
   std::size_t multiplier_place(std::uint32_t element) const {
     const std::size_t place = layout_.place[element], lane = place % kernels::kLanes;
     return reference::kMembraneLaws * (place - lane) + lane;

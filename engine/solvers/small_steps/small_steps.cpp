@@ -108,7 +108,7 @@ class StoredSmallSteps final : public SmallSteps {
                          now_.touched.push_back(b);
                        });
   }
-  /// Of meshes, where their interval is over.
+  /// Ends contacts with meshes, where their interval is over.
   bool end_contacts(Team& team) override {
     if (!store_.bodies().has_meshes()) return false;
     const Points points = store_.points(true);
@@ -240,8 +240,8 @@ class StoredSmallSteps final : public SmallSteps {
   }
   double time_of_seams() const { return 1 / now_.law_step().springs.scale; }
 
-  /// What mending does to laws is no motion: a sweep leaves some of their load as an error, and the
-  /// next one would have it again.
+  /// Mending of laws is no motion: a sweep leaves some of their load as an error, and the next one
+  /// would have it again.
   void set_aside() {
     if (model_.has_laws() && !std::exchange(now_.is_aside, true)) store_.set_aside();
   }
@@ -267,7 +267,7 @@ class StoredSmallSteps final : public SmallSteps {
     });
     take_arrivals(now_.arrived, [&](const Arrival& arrival) { begin_at_limit(arrival); });
   }
-  /// What bodies do not let in of a jolt.
+  /// The part of a jolt that bodies keep out.
   kernels::Vector held_by_body(const Jolt& jolt) {
     auto& bodies = store_.bodies();
     if (bodies.empty()) return {};

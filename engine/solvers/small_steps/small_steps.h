@@ -65,7 +65,7 @@ struct SubstepFormula {
   double give(double h) const { return part * h * (part * h) * share; }
 };
 
-/// What of a particle's flight the next substep needs to know.
+/// The past of a particle's flight that the next substep needs.
 struct ParticlePast {
   kernels::Vector v{}, v_before{}, moved{};  // moved: in the last substep
   /// A free flight that leads to v, through a substep of h.
@@ -91,7 +91,7 @@ class Departures {
   double count_ = 0;
 };
 
-/// What a frame is to do (engine/step/frame_plan.h makes it).
+/// The plan of a frame (engine/step/frame_plan.h makes it).
 struct FramePlan {
   double h = 0;  // s, of a substep
   int substeps = 1;
@@ -149,9 +149,9 @@ class SmallSteps {
                            Team& team) = 0;
   /// After each substep's repair: which seams it has closed.
   virtual void end_seams() = 0;
-  /// What they have become in the frame, and have done (J).
+  /// Their state after the frame, and their work (J).
   virtual const SeamThreads& seams() const = 0;
-  /// What contacts with bodies have done in the frame.
+  /// The effects of contacts with bodies in the frame.
   virtual void report_bodies(BodyReport& report) = 0;
   /// m, by which a particle is under the surface of a body.
   virtual double deepest_in_body(Team& team) = 0;
@@ -162,8 +162,8 @@ class SmallSteps {
   /// After the last: local passes that look at all constraints.
   virtual LocalWork repair_everywhere(const SphereContacts& contacts, std::int64_t most_visits,
                                       Team& team) = 0;
-  /// What is left of the laws of all constraints, the largest, over rest_length, with springs only;
-  /// and of those of triangles of fabric.
+  /// The largest error of the laws of all constraints, over rest_length, with springs only; and of
+  /// those of triangles of fabric.
   virtual double law_error() = 0;
   /// Where the particles are; x: where they were when the frame began.
   virtual void read_positions(kernels::VectorsView x, Team& team) const = 0;
@@ -176,7 +176,7 @@ class SmallSteps {
   virtual double largest_move(Team& team) = 0;
   /// J, of the bending elements, where the particles are (BendingFrame::resolved()).
   virtual double bending_energy(double give, Team& team) = 0;
-  /// What the solutions of the frame have left of the law of bending (StepReport).
+  /// The error of the law of bending that the solutions of the frame have left (StepReport).
   virtual double bending_error() const = 0;
   /// After the last substep.
   virtual void settle(Team& team) = 0;
@@ -203,7 +203,7 @@ class SmallSteps {
   /// The past happened in other directions. Positions are new ones.
   virtual void turn(const Turn& by) = 0;
   virtual std::size_t bytes() const = 0;
-  /// Of contacts with meshes, since this was last asked (SurfaceContacts).
+  /// Visits of contacts with meshes, since this was last asked (SurfaceContacts).
   virtual double take_contact_visits() = 0;
   /// Since this was last asked. Reports add it up.
   virtual ContactMs take_contact_ms() = 0;

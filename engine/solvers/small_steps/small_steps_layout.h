@@ -1,5 +1,5 @@
-/// What small steps (engine/solvers/small_steps/small_steps.h) need to know of a model: its
-/// constraints as blocks, in the order of a sweep, and where their particles stand.
+/// The layout of a model for small steps (engine/solvers/small_steps/small_steps.h): its
+/// constraints as blocks, in the order of a sweep, and the places of their particles.
 ///
 ///   bending       elements of one colour each, before all constraints
 ///   linkage       all constraints together, where they are chains, trees and bridges
@@ -105,7 +105,7 @@ void for_each_yarn(const YarnLayout& yarns, std::size_t family, Work&& work) {
   }
 }
 
-/// Of all families.
+/// Calls work for the blocks of all families.
 template <class Work>
 void for_each_yarn(const YarnLayout& yarns, Work&& work) {
   for (std::size_t family = 0; family < yarns.families(); ++family)

@@ -41,7 +41,7 @@ std::vector<std::uint32_t> anchors_that_hold(const Model& model, double mean_len
   return slots;
 }
 
-/// Of the yarn, between each particle that holds and the next.
+/// Adds the spans of the yarn, between each particle that holds and the next.
 void add_spans(const Model& model, const std::vector<bool>& holds,
                std::span<const std::uint32_t> links, SmallStepsLoad& load) {
   const std::vector<std::uint32_t> slots = slots_of(model.constraints, links);
@@ -113,7 +113,7 @@ Blocks find_blocks(const Model& model, const SmallStepsLayout& layout,
 /// From the blocks at pins over those that share free particles with them, level by level.
 class Levels {
  public:
-  /// own: what a sweep leaves of the particles of a block itself.
+  /// own: the share that a sweep leaves of the particles of a block itself.
   Levels(const Model& model, const Blocks& blocks, double own)
       : model_(model),
         blocks_(blocks),
@@ -268,7 +268,7 @@ void leave_tethers_out(const Model& model, std::span<const std::uint32_t> anchor
   way = other;
 }
 
-/// Who is nearest to a particle, along constraints that cannot become longer.
+/// The pin nearest to a particle, along constraints that cannot become longer.
 struct NearestPin {
   double length = std::numeric_limits<double>::infinity();  // m
   std::uint32_t pin = kNoIndex;

@@ -31,9 +31,9 @@
 ///
 /// A linkage (linkage.h) is one block, which leaves nothing of its load and may turn over.
 ///
-/// No other constraint should turn over within a substep. What has fallen as far as the cloth
-/// reaches from its pins, D, has the speed sqrt(2 g D), and h is at most a part of L over that
-/// speed.
+/// No other constraint should turn over within a substep. A particle that has fallen as far as the
+/// cloth reaches from its pins, D, has the speed sqrt(2 g D), and h is at most a part of L over
+/// that speed.
 #pragma once
 
 #include <algorithm>
@@ -47,7 +47,7 @@ namespace weft {
 class Model;
 struct SmallStepsLayout;
 
-/// What hangs on the pins.
+/// The load on the pins.
 struct SmallStepsLoad {
   /// A yarn, or another way along constraints, between two pins.
   struct Span {
@@ -67,7 +67,7 @@ SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout);
 /// How many times its weight a cloth pulls at its pins at the bottom of a swing.
 inline constexpr double kWeightsOfSwing = 3;
 
-/// Of all that accelerates a cloth.
+/// The burden of all that accelerates a cloth.
 struct Burden {
   double acceleration = 0;           // m/s^2
   double mass = 0;                   // kg, of what lies on it

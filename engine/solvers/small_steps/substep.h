@@ -39,12 +39,12 @@ struct Substep {
     if (softest) return {{1 / (h * h), 0}, *softest};
     return {{1 / formula.give(h), model.damping.stretch / h}};
   }
-  /// Of a substep of h after one of h_before.
+  /// The formula of a substep of h after one of h_before.
   SubstepFormula formula_after(double h_before) const {
     return SubstepFormula::of(settings.scheme, h / h_before)
         .with_decay(model.damping.motion, h, h_before);
   }
-  /// Of h, in which accelerations act in a flight.
+  /// The share of h in which accelerations act in a flight.
   double decaying_share() const {
     return SubstepFormula{}.with_decay(model.damping.motion, h, h).share;
   }

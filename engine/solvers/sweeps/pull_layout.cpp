@@ -175,7 +175,7 @@ void PullBuilder::add_scattered(std::uint32_t block) {
   }
 }
 
-/// What a correction of j by 1 adds to the error of the constraint that pulls, over n . n.
+/// The effect of a correction of j by 1 on the error of the constraint that pulls, over n . n.
 float weight(Meeting meeting, std::span<const simd::ConstraintBlock> blocks, std::size_t j) {
   const simd::ConstraintBlock& block = blocks[j / kLanes];
   switch (meeting) {

@@ -7,9 +7,9 @@
 /// pull per distance that occurs, with weight 0 where a lane has no neighbour there. Inside a grid
 /// a block has six; at the seams of runs a few more.
 ///
-/// A lane without a neighbour reads all the same, and another thread must not be writing there. Who
-/// sweeps a block has the tiles that it touches to itself, so that far a block may read side by
-/// side. Elsewhere, and in singles, a block is scattered: every lane has its own index.
+/// A lane without a neighbour reads all the same, and another thread must not be writing there. A
+/// thread that sweeps a block has the tiles that it touches to itself, so that far a block may read
+/// side by side. Elsewhere, and in singles, a block is scattered: every lane has its own index.
 #pragma once
 
 #include <cstdint>
@@ -54,7 +54,7 @@ struct PullLayout {
 
 PullLayout make_pull_layout(const Ordering& ordering);
 
-/// What the anticipating form keeps of a set of constraints.
+/// The memory of the anticipating form for a set of constraints.
 struct PullMemory {
   explicit PullMemory(const PullLayout& layout);
 

@@ -1,4 +1,4 @@
-/// What the reference needs to know of a model: who is adjacent to whom
+/// The layout of a model for the reference: which constraints are adjacent
 /// (kernels/reference/relax.h).
 #pragma once
 

@@ -1,7 +1,7 @@
 /// Settings::anticipate_products: the loop in the form of paper 4.2 (kernels/simd/anticipate.h).
 ///
 /// Distance constraints of the batches keep their errors, and pull what their neighbours changed
-/// through the products of directions. What they did becomes displacements, u, at the renewal of
+/// through the products of directions. Their impulses become displacements, u, at the renewal of
 /// directions. Ropes, constraints at hubs and contacts work by displacements, where there are any,
 /// so that then a pass has more parts:
 ///
@@ -13,10 +13,10 @@
 /// displacements, and nothing is left to pull. (The reference, kernels/reference/anticipated.h,
 /// forms the products of these few on the spot.)
 ///
-/// What a constraint pulls is the last change of each neighbour: between two of its visits each
-/// must have had one, which is so in trips (simd_trips.cpp) too, or have been passed over. Skipping
-/// sees to the rest: a chunk is passed over only if neither it nor a neighbour has changed anything
-/// since its last visit, so that all changes in question are 0.
+/// A constraint pulls the last change of each neighbour: between two of its visits each must have
+/// had one, which is so in trips (simd_trips.cpp) too, or have been passed over. Skipping sees to
+/// the rest: a chunk is passed over only if neither it nor a neighbour has changed anything since
+/// its last visit, so that all changes in question are 0.
 #include <algorithm>
 
 #include "engine/solvers/sweeps/pull_layout.h"
@@ -83,8 +83,8 @@ void SimdLoop::apply_sums(std::size_t first, std::size_t last) {
   }
 }
 
-/// What has not moved since directions were renewed has the error that it had then. Of the others
-/// rounding may have brought some out of tolerance.
+/// A constraint that has not moved since directions were renewed has the error that it had then.
+/// Rounding may have brought some of the others out of tolerance.
 void SimdLoop::refresh_errors() {
   team_.for_each_part(layout_.chunks.size(), kPiece, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {

@@ -117,7 +117,7 @@ std::size_t ScaledConstraints::bytes() const {
   return bytes_of(blocks) + bytes_of(scale) + bytes_of(weight);
 }
 
-/// Of padding nothing changes.
+/// Padding does not change.
 void SimdSolver::take_laws(const SpringLaws& laws, bool first_round) {
   SpringLanes& s = *springs_;
   for (std::size_t c = 0; c < layout_.constraint_slots; ++c) {
@@ -140,7 +140,7 @@ void SimdSolver::take_laws(const SpringLaws& laws, bool first_round) {
   }
 }
 
-/// What was corrected since the last renewal goes into the multipliers.
+/// Corrections since the last renewal go into the multipliers.
 void SimdSolver::renew_multipliers() {
   SpringLanes& s = *springs_;
   for (std::size_t c = 0; c < layout_.constraint_slots; ++c) {

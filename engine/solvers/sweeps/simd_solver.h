@@ -58,7 +58,7 @@ struct ScaledConstraints {
 };
 
 /// Springs in lanes, per constraint slot (kernels/simd/relax_springs.h); of rigid constraints the
-/// softness is 0. What is corrected between two renewals is a float; multipliers are doubles.
+/// softness is 0. Corrections between two renewals are floats; multipliers are doubles.
 struct SpringLanes {
   kernels::AlignedVector<double> target, softness;  // of the laws
   kernels::AlignedVector<double> multiplier;        // kg m, until the last renewal

@@ -6,11 +6,11 @@
 ///     pass 0:  | tile 0 | tile 1 | tile 2 |        | tile 3 |        | tile 4 |        |
 ///     pass 1:                             | tile 1 |        | tile 2 |        | tile 3 |
 ///
-/// The tiles are divided into one share per thread, the same shares in all passes of a trip. What
-/// pass p needs at the ends of a share comes from the shares beside it, so the first p tiles of a
-/// share and its last p, with their seams, are left to a loop of their own, which begins when all
-/// shares have ended pass p - 1. Seams between shares are swept after each of these loops. Every
-/// constraint meets the same displacements as in passes one by one: the bits are the same.
+/// The tiles are divided into one share per thread, the same shares in all passes of a trip. At the
+/// ends of a share pass p needs the shares beside it, so the first p tiles of a share and its last
+/// p, with their seams, are left to a loop of their own, which begins when all shares have ended
+/// pass p - 1. Seams between shares are swept after each of these loops. Every constraint meets the
+/// same displacements as in passes one by one: the bits are the same.
 #include <algorithm>
 
 #include "engine/solvers/sweeps/simd_loop.h"
@@ -22,7 +22,7 @@ constexpr int kDepth = 2;
 
 }  // namespace
 
-/// What is between tiles joins each to the next one only, and no pass decides about the next.
+/// Constraints between tiles join each to the next one only, and no pass decides about the next.
 bool SimdLoop::meets_neighbours_only() const {
   const Ordering& ordering = s_.model_.ordering;
   return !ordering.tiles.empty() && layout_.seams_join_neighbours &&
@@ -78,7 +78,7 @@ kernels::Sweep SimdLoop::sweep_ahead(const Share& share, std::size_t depth) {
   return sweep;
 }
 
-/// What sweep_ahead has left of a pass, but the first tile.
+/// The part of a pass that sweep_ahead has left, but the first tile.
 kernels::Sweep SimdLoop::sweep_ends(const Share& share, std::size_t pass) {
   kernels::Sweep sweep;
   const bool all = share.last - share.first <= 2 * pass;

@@ -64,12 +64,12 @@ struct YarnLayout {
 /// With `quads` even a model that could be woven is laid out in quads.
 enum class YarnMemory : std::uint8_t { woven_if_possible, quads };
 
-/// Of these distance constraints, which are not at hubs. spans_first: families are in an order by
-/// which linear systems converge where spans are taut.
+/// The layout of these distance constraints, which are not at hubs. spans_first: families are in an
+/// order by which linear systems converge where spans are taut.
 YarnLayout make_yarn_layout(const Model& model, std::span<const std::uint32_t> constraints,
                             YarnMemory memory, bool spans_first);
-/// Of all of them, for the yarn solver. In scenes with spheres that order saves it no iterations,
-/// and gains energy.
+/// The layout of all of them, for the yarn solver. In scenes with spheres that order saves it no
+/// iterations, and gains energy.
 YarnLayout make_yarn_layout(const Model& model);
 
 /// Per slot.

@@ -131,7 +131,7 @@ class YarnSolver final : public ConstraintSolver {
   SimdMeasure& measure_;
 
   double cell_ = 0;                               // the grid of base_
-  bool from_start_ = false, velocities_ = false;  // what is being solved
+  bool from_start_ = false, velocities_ = false;  // the present system
   bool moved_ = false;                            // rows have no differences of this base yet
   kernels::AlignedVector<simd::YarnBaseSteps> base_step_;  // per row
   kernels::AlignedVector<simd::YarnDirections> start_;     // scheme rattle only

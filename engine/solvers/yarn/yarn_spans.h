@@ -1,4 +1,4 @@
-/// Spans: the parts of yarns between two fixed particles. What they are for: held_spans.h.
+/// Spans: the parts of yarns between two fixed particles. held_spans.h uses them.
 #pragma once
 
 #include <cstdint>
