@@ -172,8 +172,8 @@ struct StepReport {
   /// Seams that are open although their time is over: they pull with too small a force, or
   /// something holds their ends apart. A step that ends with one has not converged.
   int late_seams = 0;
-  /// The number of a seam in the description: of late ones the one with the widest gap, or else of
-  /// those in `held_apart`.
+  /// The number in the description of the seam with the widest gap: among late seams or, if there
+  /// are none, among those in `held_apart`.
   std::uint32_t worst_seam = kNoIndex;
   /// Seams that are open, and rigid constraints out of tolerance, between two held particles: both
   /// are fixed, or anchored without a limit to move within. Only the caller can mend that: by
@@ -291,10 +291,10 @@ class WEFT_API Cloth {
   Cloth clone() const;
   /// Takes over the model, state, forces, gravity, wind, pending pin moves and bodies of `from`,
   /// and its solver's memory of the last steps. `from` must be a cloth of the same Model, or of one
-  /// that changes made of the same Model. Bodies make an automatic solver small_steps. This cloth
-  /// keeps its settings, and refuses a state that does not fit them. If solver, scheme, backend,
-  /// iterations or a tolerance (but for velocity_tolerance) differ, the solver's memory is dropped,
-  /// and positions out of tolerance are projected as if newly written.
+  /// derived from it by changes. Bodies make an automatic solver small_steps. This cloth keeps its
+  /// settings, and refuses a state that does not fit them. If solver, scheme, backend, iterations
+  /// or a tolerance (but for velocity_tolerance) differ, the solver's memory is dropped, and
+  /// positions out of tolerance are projected as if newly written.
   Result<void> copy_state(const Cloth& from);
 
   /// Everything that copy_state takes over, except the model, as bytes for a file. Numbers are
@@ -302,8 +302,8 @@ class WEFT_API Cloth {
   /// equal model (of the same description; load_model) that loads the bytes, in another program
   /// too, continues bit for bit as this one does, if its settings are the same.
   std::vector<std::byte> save_state() const;
-  /// Goes on where the saved cloth was, with the settings of this cloth, as copy_state does. It
-  /// takes as long as to create a cloth, and hulls of bodies are built again. Bytes that are
+  /// Continues from the saved state with the settings of this cloth, as copy_state does. It
+  /// takes as long as creating a cloth, and hulls of bodies are built again. Bytes that are
   /// damaged, of another version of the format, or of another model are refused, and nothing is
   /// changed. change() and limit_anchors may replace the model: then save the model, too
   /// (save_model).

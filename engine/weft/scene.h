@@ -72,7 +72,7 @@ struct BendingElement {
   std::array<double, 4> weights{};           ///< the last is 0 where its particle is kNoIndex
   double rest = 0;                           ///< m, |d| of the shape at rest; 0: flat
   double compliance = 0;                     ///< m/N, > 0
-  double fold = 0;                           ///< rad, -pi to pi, of four particles; 0: flat
+  double fold = 0;                           ///< m, d along n at rest, of hinges; 0: flat
 };
 
 /// A triangle of fabric. The columns of its deformation F = [f_u f_v] are the images of a unit of

@@ -38,13 +38,13 @@ namespace weft {
 ///   small_steps   triangles of fabric, bending, anchors, seams or bodies; scheme implicit or bdf2;
 ///                 a motion_tolerance; springs, if the scheme is automatic
 ///   gauss_seidel  the reference backend, or `iterations`
-///   small_steps   chains and trees that hang from one particle, of ropes, of unequal masses or of
-///                 few links; at 0.1 % and looser those of bars, and cloth, woven or a mesh, with
-///                 nearly equal masses: without heavy free spheres and velocity_correction, if the
-///                 scheme is automatic
+///   small_steps   with an automatic scheme, without heavy free spheres and velocity_correction:
+///                 chains and trees that hang from one particle, if they are ropes, have unequal
+///                 masses or few links; at 0.1 % and looser also those of bars, and cloth, woven or
+///                 a mesh, with nearly equal masses
 ///   direct        other chains, trees and bridges of ropes
 ///   yarn          all else
-///   The thresholds are no part of the interface.
+///   The thresholds are not part of the interface.
 /// small_steps: many short substeps of one relaxed sweep each, over yarns where the cloth has them
 ///   and over single constraints elsewhere. Then come passes over the constraints that are still
 ///   out of tolerance. A sweep leaves a strain that falls with the square of the substep. The
@@ -66,7 +66,7 @@ namespace weft {
 /// direct: computes all impulses at once by sparse factorisation, and repeats this until the true
 ///   errors are within tolerance: two or three times, at any tolerance. Use it for mass ratios of a
 ///   million. At most 16 bodies may take part: free spheres that touch something or are joined to
-///   something, and particles of more than 64 constraints. If there are more, its substeps fall
+///   something, and particles of more than 64 constraints. With more than that its substeps fall
 ///   back as below.
 /// gauss_seidel: the impulse loop of the paper (section 3.2), one constraint after the other.
 ///
@@ -113,12 +113,12 @@ enum class Isa : std::uint8_t { automatic, sse2, avx2, avx512, neon };
 inline constexpr int kMaxThreads = 64;
 inline constexpr int kAutomaticSubsteps = 0;
 
-/// How a cloth is solved. The defaults are the fastest way to 1 % that is known here;
-/// paper_settings() has the settings of the paper. The order of the fields is that of the C struct;
-/// each comment says whether a field is for everyday use.
+/// How a cloth is solved. The defaults are the fastest known way to 1 %; paper_settings() has the
+/// settings of the paper. The order of the fields is that of the C struct; each comment says
+/// whether a field is for everyday use.
 struct Settings {
-  /// Everyday. The strain, | |a-b| - rest | / rest, that every step must reach; of a spring, the
-  /// distance from its law; and the fraction of the bending forces that may stay unbalanced
+  /// Everyday. The largest strain, | |a-b| - rest | / rest, that a step may leave; for a spring,
+  /// the largest error of its law; and the fraction of the bending forces that may stay unbalanced
   /// (StepReport::max_bending_error). > 0. The simd backend works in floats. So Cloth::create
   /// refuses rest lengths, tolerance * rest length, and those of the tolerances below that are
   /// used, outside 1e-18 to 1e18.
@@ -161,9 +161,9 @@ struct Settings {
   /// loop may do as many of its own. If a substep that is cut off would gain energy, its velocities
   /// are scaled down.
   int max_iterations = 1'000'000;
-  /// Advanced. m, of penetration, and beyond the limits of an anchor, that a step may leave; > 0.
+  /// Advanced. m, > 0: the allowed penetration, and excess over the limits of an anchor.
   double contact_tolerance = 1e-4;
-  double velocity_tolerance = 0.01;  ///< Advanced. m/s along a constraint; > 0
+  double velocity_tolerance = 0.01;  ///< Advanced. m/s along a constraint, > 0
   /// Everyday. m/s, the allowed error of motion of a particle; 0: off. weft uses more substeps (up
   /// to 1024) until the error is small enough, as far as rounding allows; StepReport::motion_error
   /// reports the error. The estimate leaves out contacts and chaos. Only small_steps has it, and

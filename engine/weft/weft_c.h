@@ -170,7 +170,7 @@ typedef struct weft_scene { /* SceneDescription */
   size_t pressure_count;
   const weft_pressure* pressures; /* of surface_triangles */
 
-  const double* bending_folds; /* or NULL: 0; rad, of hinges */
+  const double* bending_folds; /* or NULL: 0; m, of hinges */
 
   int self_contact_untangle; /* yes or no: whether triangles that cross are drawn apart */
 } weft_scene;
