@@ -42,10 +42,10 @@ inline constexpr double kCalmWay = 2;
 /// what pushes a particle last undoes what others did. A sheet over the edge of a knife is 0.3 mm
 /// too deep with one round, 0.13 with two, 0.05 with three, 0.02 with four.
 inline constexpr int kMeshRounds = 3;
-/// So many turns more corners of bodies have beside faces of the cloth, while they still push by so
-/// much (m): of two triangles that close over a sharp cone 199 of 240 frames miss without them, 15
-/// with 3 turns, 4 with 16, 1 with 32, none with 96. Where bodies overlap they may take as long as
-/// all other contact.
+/// Further turns of corners of bodies beside faces of the cloth, while they push by more than the
+/// second number (m). Where two triangles close over a sharp cone 199 of 240 frames miss without
+/// turns, 15 with 3, 4 with 16, 1 with 32, none with 96. Where bodies overlap turns may take as
+/// long as all other contact.
 inline constexpr int kCornerTurns = 96;
 inline constexpr double kCornerPush = 5e-5;
 /// In ways that a particle is predicted to take until the next search: what it may go beyond.
@@ -56,10 +56,10 @@ inline constexpr double kContactReach = 0.5;
 inline constexpr double kContactStray = 0.25;
 /// The same in thicknesses, beside meshes: pairs that rest on each other are near in any case.
 inline constexpr double kContactSpare = 0.3;
-/// Beside meshes: pairs of edges that face each other within so much of their lengths past their
-/// ends, and pairs from which neighbours stand out by no more than this sine, or which pass each
-/// other by more than this share of their distance, may become those that touch within an interval.
-/// Others are left to their neighbours, and to the verification.
+/// Three limits of pairs beside meshes that may come to touch within an interval: edges face each
+/// other within the first share of their lengths past their ends; neighbours stand out by no more
+/// than the second, a sine; or the pair passes by more than the third share of its distance.
+/// Other pairs are left to their neighbours, and to the verification.
 inline constexpr double kContactBeyond = 0.2, kContactLean = 0.6, kContactPassing = 0.5;
 /// In thicknesses: the margin of boxes that hold points until a step ends. Fluttering cloth leaves
 /// them, and its candidates are renewed. While positions are put right boxes of an interval have it
@@ -115,9 +115,9 @@ inline constexpr double kTouchLean = 0.02;
 /// two hard cases miss a frame, with 4 and 8 none.
 inline constexpr double kTogether = 0.01;
 inline constexpr int kPlaneSteps = 16;
-/// In the largest inverse mass of a pair: the least that counts. A particle that has the part w in
-/// the nearest point of a feature that is fixed otherwise would be thrown 1 / w times as far as
-/// the pair is deep: at 0 a sheet is thrown that the tip of a body touches beside its pins.
+/// In the largest inverse mass of a pair: the least that counts. If a particle has the part w in
+/// the nearest point of an otherwise fixed feature, it would be thrown 1 / w times as far as the
+/// pair is deep: at 0 the tip of a body throws a sheet that it touches beside its pins.
 inline constexpr double kLeastTouchWeight = 0.05;
 /// In thicknesses: what is nearer when an interval is over, and was not expected, is no rounding;
 /// and the rounds in which such pairs are put right before the rest is verified. Without either two

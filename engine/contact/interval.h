@@ -4,22 +4,22 @@
 ///
 ///   1  points: where all points are, and the boxes that they are expected to stay in
 ///   2  candidates: which pairs of features may meet at all
-///   3  near: which of them may touch; tangles: what comes out
+///   3  near: which of them may touch; tangles: particles that come out
 ///      in each substep:
 ///   4  points: where the vertices of bodies are that near pairs have
 ///      squeeze: how bodies share the room between them
 ///      contacts: normals of the cloth beside itself are frozen, and multipliers act again
 ///   5  respond: lanes find which near pairs of bodies touch
-///   6  respond: these are pushed apart, along normals of that moment, with friction; contacts:
-///   rounds
-///      of visits beside that
+///   6  respond: these are pushed apart, along normals of that moment, with friction
+///      contacts: rounds of visits to pairs of the cloth with itself
 ///      when the interval is over:
-///   7  verify: what came near unexpectedly, and what went through each other
-///   8  rescue: that is stopped
-///   9  tangles: what could not be stopped, or crossed from the beginning
+///   7  verify: which pairs came near unexpectedly
+///      and which went through each other
+///   8  rescue: these are stopped
+///   9  tangles: pairs that could not be stopped, or crossed from the beginning
 ///
 /// While positions are put right an interval lasts until a particle leaves its box, and has the
-/// stages 7 to 9 for what the cloth has to do with itself.
+/// stages 7 to 9 for the cloth with itself.
 ///
 /// Particles that are inside of a one-sided body when it appears, or when positions are written,
 /// are known as such until they are out. Triangles that cross a body are known until they do no

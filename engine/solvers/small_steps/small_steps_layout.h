@@ -8,9 +8,9 @@
 ///   edge blocks   kLanes constraints of one colour each: tile by tile, then between the tiles
 ///   serial        constraints at hubs, one after the other
 ///   membrane      triangles of fabric of one colour each
-///   anchors       after each family and in the end, since what one family did to an anchored
-///   particle
-///                 must not move the other's
+///   anchors       after each family and in the end,
+///                 since the effect of one family on an anchored particle must not move those
+///                 of the other
 #pragma once
 
 #include <cstdint>
