@@ -6,9 +6,9 @@
 ///   batch       constraints of one colour and one kind within a tile, or between tiles. No slot
 ///               occurs twice in a batch, padding included, so that its constraints are
 ///               independent
-///   run         consecutive constraints c + k of a batch that join the slots a + k and b + k
-///               and need no
-///               indices
+///   run         consecutive constraints c + k of a batch
+///               that join the slots a + k and b + k
+///               and need no indices
 ///   singles     the rest of a batch, whose constraints find their slots through an index
 ///
 /// One pass over the constraints goes through the batches as if in order: tile after tile, where

@@ -19,7 +19,7 @@
 ///
 /// Triangle meshes touch the whole surface of the cloth (SceneDescription::surface): particles
 /// against triangles both ways, and edges against edges. Every 2 ms each pair that may have met is
-/// verified, more often if the mesh is fast, and less often if it is alone, and slow. So a
+/// verified, more often if the mesh is fast, and less often if it is slow and stands alone. So a
 /// cloth that does not cross the mesh when a step begins does not cross it when the step ends.
 /// Where this is not possible, as between two bodies that close on each other, the report says so
 /// (StepReport::intersecting).

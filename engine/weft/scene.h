@@ -202,7 +202,7 @@ struct Seam {
 /// by threads (SceneDescription::surface). Layers stay one thickness apart, with friction. Features
 /// that are nearer than that in the shape at rest keep nearly the distance that they have there. So
 /// a thickness may be larger than an edge; but then all neighbours are in contact, folds are
-/// stiffer, and a step takes long. Half an edge is a good bound (tests/README.md has figures).
+/// stiffer, and a step takes long. Half an edge is a good bound (perf/tried.md has figures).
 /// Seams join the cloth in the shape at rest, whether they are open or closed.
 ///
 /// A cloth that does not cross itself when a step begins does not cross itself when it ends,
