@@ -144,7 +144,7 @@ bool neighbour_stands_out(const ContactSurface& surface, std::uint32_t point, ke
   return false;
 }
 
-/// The look at a triangle's nearest point; n leads from it to the other feature.
+/// Whether a triangle is a ghost at its nearest point; n leads from it to the other feature.
 template <class At>
 bool triangle_is_ghost(const ContactSurface& surface, std::uint32_t triangle,
                        const reference::Nearest& nearest, kernels::Vector n, double lean, At&& at) {

@@ -90,7 +90,7 @@ bool may_be_contact(const ContactPoints& points, const Tangles& tangles, const P
          !tangles.cross_beside(pair, four);
 }
 
-/// A pair that may be in front of a surface or behind it is one of both, or far.
+/// Settles whether a pair is in front of a surface, behind it, or far.
 void settle(ContactPoints& points, const Pair& pair, const Four& four, SeenPair& seen) {
   ContactSurface& later = points.later(pair);
   if (seen.sight == Sight::touches) {
