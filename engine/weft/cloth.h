@@ -71,7 +71,7 @@ enum class Stage : std::uint8_t {
   predict,  ///< chooses the number of automatic substeps, too; small_steps: the start of a step
   find_contacts,    ///< with spheres, and with bodies (ContactMs::find)
   solve_positions,  ///< small_steps: all substeps
-  commit,           ///< and what belongs to no other stage
+  commit,           ///< and work that belongs to no other stage
   correct_velocities,
   report
 };
@@ -90,13 +90,13 @@ struct ContactMs {
 };
 
 /// The work of one step and the errors at its end. Counts and seconds are summed over the substeps;
-/// the status is the worst of theirs.
+/// the status is the worst of all.
 struct StepReport {
   Status status = Status::converged;
   /// The cloth slept (Settings::sleep): no work was done, and the errors are those of its last
   /// step.
   bool asleep = false;
-  int substeps = 0;  ///< done; 0 if nothing is committed, and asleep
+  int substeps = 0;  ///< done; 0 if nothing is committed, or asleep
   int halvings = 0;  ///< attempts at a substep that were rejected (Solver)
   /// Passes over the position constraints. yarn: sweeps and conjugate gradient iterations. direct:
   /// solves. small_steps: `substeps` sweeps, further sweeps, and local passes, counted by their
