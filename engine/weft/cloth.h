@@ -293,7 +293,7 @@ class WEFT_API Cloth {
   /// and its solver's memory of the last steps. `from` must be a cloth of the same Model, or of one
   /// derived from it by changes. Bodies make an automatic solver small_steps. This cloth keeps its
   /// settings, and refuses a state that does not fit them. If solver, scheme, backend, iterations
-  /// or a tolerance (but for velocity_tolerance) differ, the solver's memory is dropped, and
+  /// or a tolerance (except velocity_tolerance) differ, the solver's memory is dropped, and
   /// positions out of tolerance are projected as if newly written.
   Result<void> copy_state(const Cloth& from);
 
@@ -448,7 +448,7 @@ class WEFT_API Cloth {
   /// keeps its memory, unless Solver::automatic, which chooses anew, chooses another solver.
   ///
   /// Constraints that are then longer or shorter than they may be, and those of pins that are
-  /// released, are put right when the next step begins; velocities are unchanged. So are fabrics
+  /// released, are corrected when the next step begins; velocities are unchanged. So are fabrics
   /// (write_positions) whose rest lengths change by more than the tolerance. A particle is released
   /// at the speed that move_fixed gave it in the last step, and no energy is gained.
   ///
@@ -462,7 +462,7 @@ class WEFT_API Cloth {
   /// Recomputed from the positions by this thread alone. The report of the last step has its strain
   /// already, which may differ in the last bits.
   Strain strain() const;
-  /// m, the largest over all pairs of a sphere and a particle or sphere, but for two fixed ones; 0
+  /// m, the largest over all pairs of a sphere and a particle or sphere, except two fixed ones; 0
   /// without spheres.
   double max_penetration() const;
   Energy energy() const;  ///< J, of the particles that are not fixed

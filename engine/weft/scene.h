@@ -215,7 +215,7 @@ struct Seam {
 /// cross cuts off a part of the cloth, this part comes through: the one with the fewest fixed
 /// particles, the lightest of several. Elsewhere the line becomes shorter. The work of this is
 /// StepReport::untangling_work. Triangles beside those that cross may come to cross, too, for a
-/// while; all others are kept apart as ever. Where pins hold both sides the crossing may stay.
+/// while; all others are kept apart as always. Where pins hold both sides the crossing may stay.
 /// Cloth that does not cross itself has the same bits with `untangle` and without.
 ///
 /// Layers that begin exactly in one plane, or whose positions are written so, are moved apart by

@@ -22,7 +22,7 @@
 ///   isa                  to compare instruction sets, or to use fewer than the machine has
 ///   iterations           for the same number of iterations in each step, whatever the error
 ///   directions, renew_after, skip, anticipate, anticipate_products, impulse_limit
-///                        to measure the method of the paper; nobody else needs them
+///                        to measure the method of the paper; not needed otherwise
 ///
 /// Cloth::create checks the settings. An error names the field and the value.
 #pragma once

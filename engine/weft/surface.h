@@ -55,10 +55,10 @@ class WEFT_API Surface {
   /// of the normals of the faces around it, weighted by their areas. A face counts at all vertices
   /// of one particle (for map_surface: at vertices of one place, or nearer than weld_distance, or
   /// sewn), so edges of texture coordinates do not show. Vertices of a seam that has closed
-  /// (MeshDescription::seam_time) have one place, their mean, and one normal, but for map_surface.
-  /// If the areas sum to zero (threads, collapsed faces) the normal is (0, 0, 1). If several
-  /// faces have the same corners, as in files of two-sided surfaces, the first counts. A
-  /// vertex of the other faces alone, which are wound the other way, has the opposite
+  /// (MeshDescription::seam_time) have one place, their mean, and one normal, except with
+  /// map_surface. If the areas sum to zero (threads, collapsed faces) the normal is (0, 0, 1).
+  /// If several faces have the same corners, as in files of two-sided surfaces, the first
+  /// counts. A vertex of the other faces alone, which are wound the other way, has the opposite
   /// normal.
   ///
   /// Vertices in no face and no line have no particle (MeshCloth::particle_of_vertex is kNoIndex)
