@@ -59,16 +59,27 @@ void keep_stiffness(const State& s, double dt, FramePlan& plan) {
   if (give < least) plan.omega *= give / least;
 }
 
+/// s, of substeps whose sweeps are as stiff as those of the last frame.
+double length_of_last(const State& s) {
+  const double part = SubstepFormula::of(s.settings.scheme, 1).part;
+  return std::sqrt(tuning::kOmega * s.give_per_mass) / part;
+}
+
 /// Where a pin was made, let go or put down, what hangs on it need not pull: fabric that lies on a
 /// table does not. So substeps are no shorter than in the last frame, until one has much to put
 /// right.
 void keep_length(State& s, double dt) {
   const bool is_by_laws = refines_substeps(s) && s.settings.motion_tolerance == 0;
   if (!is_by_laws || !s.displaced || s.placed) return;
-  const double part = SubstepFormula::of(s.settings.scheme, 1).part;
-  const double last = std::sqrt(tuning::kOmega * s.give_per_mass) / part;
-  const double shorter = std::log2(std::min(dt, last) / usual_length(s, dt));
+  const double shorter = std::log2(std::min(dt, length_of_last(s)) / usual_length(s, dt));
   if (shorter > 0) s.refinement -= shorter;
+}
+
+/// s, of the shortest substeps of a frame. Strains that longer ones left would come back as speed.
+/// So automatic substeps become shorter over some frames.
+double shortest_length(const State& s, double dt) {
+  if (s.placed) return 0;
+  return length_of_last(s) * std::exp(-dt / (2 * tuning::kStiffening));
 }
 
 /// A number of substeps that was given bounds the time of a step: where it is less than automatic
@@ -91,7 +102,7 @@ double refinement_for_motion(const State& s, const FramePlan& plan, double error
                              const Budget& budget) {
   constexpr double kLevel = 0.5;
   const double asked = s.settings.motion_tolerance;
-  const bool can_fall = plan.substeps < most_substeps(budget) &&
+  const bool can_fall = plan.postponed == 0 && plan.substeps < most_substeps(budget) &&
                         error > tuning::kOverRounding * s.small_steps->rounding_error(plan.h);
   if (error > asked && can_fall) return s.refinement + kLevel;
   const bool is_small = error < tuning::kMotionSpare * asked;
@@ -107,10 +118,11 @@ double refinement_for_laws(const State& s, const FramePlan& plan, const FrameCou
   const double share = course.beyond / plan.substeps;
   if (share > tuning::kMuchMended && plan.substeps < most_substeps(budget)) {
     lengthening.take_back();
-    return s.refinement + std::log2(1 + share);
+    return std::max(s.refinement, s.refinement - plan.postponed + std::log2(1 + share));
   }
   const double least = -std::log2(kWeightsOfSwing) / 2;
-  if (share >= tuning::kLittleMended || s.refinement <= least) return s.refinement;
+  if (plan.postponed > 0 || share >= tuning::kLittleMended || s.refinement <= least)
+    return s.refinement;
   if (!lengthening.begin(kLevel, course.left)) return s.refinement;
   return std::max(least, s.refinement - kLevel);
 }
@@ -144,10 +156,13 @@ FramePlan plan_of_step(State& s, const Attempt& attempt, double dt, const Budget
     plan.passes = std::min<double>(budget.positions, passes_beyond(plan.substeps, wanted));
     keep_stiffness(s, dt, plan);
   } else {
-    plan.substeps = static_cast<int>(std::min<double>(wanted, most_substeps(budget)));
+    const double length = takes_over ? usual : std::max(usual, shortest_length(s, dt));
+    plan.postponed = std::log2(length / usual);
+    plan.substeps =
+        static_cast<int>(std::clamp<double>(std::ceil(dt / length), 1, most_substeps(budget)));
     plan.h = dt / plan.substeps;
     plan.passes = budget.positions - plan.substeps;
-    const double part = 2 * plan.h / usual;
+    const double part = 2 * plan.h / length;
     if (part < 1) plan.omega *= part * part;
   }
   if (attempt.in_vain)

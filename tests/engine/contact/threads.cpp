@@ -110,9 +110,17 @@ double highest(const Cloth& cloth, std::uint32_t first, std::uint32_t count) {
   return most;
 }
 
+double mean_height(const Cloth& cloth, std::uint32_t first, std::uint32_t count) {
+  double sum = 0;
+  for (std::uint32_t i = 0; i < count; ++i) sum += cloth.position(first + i).y;
+  return sum / count;
+}
+
 /// Nothing crosses when a frame ends, and there is no more energy than at the start. (A chain that
 /// is caught loses some when it is taut, and gets that back as it swings: tests/README.md.)
-void run_without_crossing(Cloth& cloth, const SceneDescription& scene, int rate, double seconds) {
+void run_without_crossing(
+    Cloth& cloth, const SceneDescription& scene, int rate, double seconds,
+    const std::function<void()>& check = [] {}) {
   const double energy = cloth.energy().total();
   double unit = 0;  // J, of 1 % of 0.15 m
   for (const double mass : scene.masses) unit += 10 * mass * 0.01 * 0.15;
@@ -124,6 +132,7 @@ void run_without_crossing(Cloth& cloth, const SceneDescription& scene, int rate,
     CHECK(report.tangled == 0);
     if (frame % std::max(1, rate / 30) == 0) CHECK(crossings_of(cloth, scene) == 0);
     CHECK(cloth.energy().total() < energy + unit);
+    check();
   }
 }
 
@@ -207,19 +216,27 @@ TEST_CASE("a cord that falls on another cord hangs over it") {
   });
 }
 
-TEST_CASE("cloth lies over a cord whose links are longer than its cells") {
+/// A taut cord bears cloth by a tension that many short substeps alone can carry. (While substeps
+/// become shorter a frame may miss the tolerance, and tells it.)
+TEST_CASE("cloth lies over a cord whose links are longer than its cells, and is not thrown up") {
   for_each_setting([](int rate, const char* material) {
     for (const std::uint32_t cells : {8u, 13u}) {
-      CAPTURE(cells);
-      Pieces pieces;
-      const auto sheet = pieces.add_sheet(cells, cells, [](double u, double v) {
-        return Vec3{0.12 * (u - 0.5), 0.01, 0.12 * (v - 0.5)};
-      });
-      add_line(pieces, 3, 0.3);
-      const SceneDescription scene = pieces.scene(material);
-      Cloth cloth = cloth_from(scene);
-      run_without_crossing(cloth, scene, rate, 0.4);
-      CHECK(highest(cloth, sheet, (cells + 1) * (cells + 1)) > -0.06);
+      for (const double sag : {0.04, 0.0}) {
+        CAPTURE(cells);
+        CAPTURE(sag);
+        constexpr double kHeight = 0.01;
+        Pieces pieces;
+        const auto sheet = pieces.add_sheet(cells, cells, [](double u, double v) {
+          return Vec3{0.12 * (u - 0.5), kHeight, 0.12 * (v - 0.5)};
+        });
+        add_line(pieces, 3, 0.3, sag);
+        const SceneDescription scene = pieces.scene(material);
+        Cloth cloth = cloth_from(scene);
+        const std::uint32_t count = (cells + 1) * (cells + 1);
+        run_without_crossing(cloth, scene, rate, 0.4,
+                             [&] { CHECK(mean_height(cloth, sheet, count) < kHeight); });
+        CHECK(highest(cloth, sheet, count) > -0.06);
+      }
     }
   });
 }
