@@ -211,7 +211,8 @@ TEST_CASE("corners: no energy is gained that the paper's scheme would not gain")
   CHECK(largest_gain(direct(settings)) <= std::max(largest_gain(settings), 0.0) + 1e-4);
 }
 
-TEST_CASE("a chain under a heavy end holds, and swings as a pendulum") {
+TEST_CASE("a chain under a heavy end holds, and swings as a pendulum" *
+          doctest::test_suite("long")) {
   for (const double end_mass : {1.0, 1e3, 1e6}) {
     CAPTURE(end_mass);
     scenes::Options options;

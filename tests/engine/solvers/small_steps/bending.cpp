@@ -195,7 +195,8 @@ double most_kinetic(const SceneDescription& scene, const Settings& settings) {
   return most;
 }
 
-TEST_CASE("a crumpled sheet gains no energy, however stiff, in substeps of any length") {
+TEST_CASE("a crumpled sheet gains no energy, however stiff, in substeps of any length" *
+          doctest::test_suite("long")) {
   const struct {
     double stiffness;  // N m
     int substeps;
