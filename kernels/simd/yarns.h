@@ -153,54 +153,56 @@ template <bool kSprings, class At, class Keep>
   return out;
 }
 
+/// Solves a block that was solved once until its errors are within `enough`, or `most` solves are
+/// done. From the third solve on everything stays in the scratch, or in place. A function of its
+/// own, which both kinds of base share: it is as long as all else of such a sweep, and compiled for
+/// each kind of row.
+template <bool kSprings, class At>
+[[gnu::noinline]] Swept solve_again(const Yarns& y, const YarnBlock& block, At at, At base,
+                                    const Scratch& scratch, float enough, std::uint32_t most) {
+  Yarns again = y;
+  again.moved = false;
+  Swept swept{1, false};
+  for (; !swept.within && swept.solves < most; ++swept.solves) {
+    if (swept.solves > 1) {
+      find_impulses_again<kSprings>(y, block, scratch);
+    } else {
+      with_base(
+          again, block, [&](auto where) __attribute__((always_inline)) {
+            find_impulses<where, Visit::again, kSprings>(again, block, at, base, scratch, 0);
+          });
+    }
+    swept.within = !apply_impulses<kSprings>(
+        y, block, at, scratch, enough,
+        [&](std::uint32_t k, std::uint32_t lane, const FloatVector& d, const FloatVector& moved)
+            __attribute__((always_inline)) {
+              store(scratch.of(lane)[k].n, d);
+              at.keep_moved(k, lane, moved);
+            });
+  }
+  at.put_kept(rows_of(block), lanes_of(block));
+  return swept;
+}
+
 /// Solves a block until its errors are within `enough`, at most `most` times. A block whose errors
 /// are below a hundredth of `enough` is not solved, because larger errors that stay come back as
-/// speed. From the third solve on everything stays in the scratch, or in place. A link whose ends a
-/// solve brings together exactly is left to the next sweep.
+/// speed. A link whose ends a solve brings together exactly is left to the next sweep.
 template <Base kBase, bool kSprings, class At>
 [[gnu::always_inline]] inline Swept sweep_watched(const Yarns& y, const YarnBlock& block, At at,
                                                   At base, const Scratch& scratch, float enough,
                                                   std::uint32_t most) {
   constexpr float kQuiet = 0.01f;
-  const auto put = [&](std::uint32_t k, std::uint32_t lane, const FloatVector&,
-                       const FloatVector& moved) __attribute__((always_inline)) {
-    at.put(k, lane, moved);
-  };
-  const auto keep = [&](std::uint32_t k, std::uint32_t lane, const FloatVector& d,
-                        const FloatVector& moved) __attribute__((always_inline)) {
-    store(scratch.of(lane)[k].n, d);
-    at.keep_moved(k, lane, moved);
-  };
-  const auto put_back = [&] {
-    for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) at.put_back(lane);
-  };
   if (find_impulses<kBase, Visit::first, kSprings>(y, block, at, base, scratch, kQuiet * enough)) {
     return {0, true};
   }
-  bool out = apply_impulses<kSprings>(y, block, at, scratch, enough, put);
-  if (!out || most == 1) {
-    put_back();
-    return {1, !out};
-  }
-  if constexpr (kBase == Base::remembered) {
-    find_impulses<Base::remembered, Visit::again, kSprings>(y, block, at, base, scratch, 0);
-  } else {
-    Yarns again = y;
-    again.moved = false;
-    with_base(
-        again, block, [&](auto where) __attribute__((always_inline)) {
-          find_impulses<where, Visit::again, kSprings>(again, block, at, base, scratch, 0);
-        });
-  }
-  out = apply_impulses<kSprings>(y, block, at, scratch, enough, keep);
-  std::uint32_t solves = 2;
-  for (; out && solves < most; ++solves) {
-    find_impulses_again<kSprings>(y, block, scratch);
-    out = apply_impulses<kSprings>(y, block, at, scratch, enough, keep);
-  }
-  at.put_kept(rows_of(block), lanes_of(block));
-  put_back();
-  return {solves, !out};
+  const bool out = apply_impulses<kSprings>(
+      y, block, at, scratch, enough,
+      [&](std::uint32_t k, std::uint32_t lane, const FloatVector&, const FloatVector& moved)
+          __attribute__((always_inline)) { at.put(k, lane, moved); });
+  Swept swept{1, !out};
+  if (out && most > 1) swept = solve_again<kSprings>(y, block, at, base, scratch, enough, most);
+  for (std::uint32_t lane = 0; lane < lanes_of(block); lane += kFloats) at.put_back(lane);
+  return swept;
 }
 
 void yarn_sweep(const Yarns& y, const YarnBlock& block, float* u, YarnScratch* scratch) {
