@@ -1,7 +1,7 @@
 #include "engine/c_interface/scene_arrays.h"
 
 #include "engine/c_interface/arrays.h"
-#include "engine/c_interface/pressures.h"
+#include "engine/c_interface/pressure_structs.h"
 #include "engine/c_interface/structs.h"
 
 namespace weft::c_interface {

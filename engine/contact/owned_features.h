@@ -7,7 +7,10 @@
 #include <cstdint>
 #include <utility>
 
-#include "engine/contact/candidates.h"
+#include "engine/contact/features.h"
+#include "engine/contact/points.h"
+#include "engine/contact/stars.h"
+#include "engine/contact/surface.h"
 
 namespace weft {
 

@@ -143,7 +143,7 @@ Result<void> Cloth::set_pressure(std::span<const Pressure> pressures) {
   impl_->state.wake();
   impl_->state.gas = gas_going_on(impl_->state, known);
   impl_->state.pressures = std::move(known);
-  make_room_for_pressure(impl_->state);
+  impl_->state.make_room_for_pressure();
   return {};
 }
 

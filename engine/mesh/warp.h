@@ -3,7 +3,9 @@
 
 #include <weft/mesh.h>
 
-#include "engine/mesh/faces.h"
+#include <cstddef>
+
+#include "engine/geometry.h"
 
 namespace weft::mesh {
 

@@ -4,7 +4,6 @@
 
 #include "engine/bytes_of.h"
 #include "engine/model/pressures.h"
-#include "engine/model/threads.h"
 #include "engine/model/validate.h"
 #include "kernels/reference/relax.h"
 
@@ -365,25 +364,6 @@ void Model::append(const Constraint& c, std::uint32_t described, std::uint32_t a
   s.turned.push_back(ordering.particle_at[a] != c.a);
   s.described.push_back(described);
   s.slot.push_back(kNoIndex);
-}
-
-const TriangleSurface& Model::touched_surface() const {
-  return touched_surface_.get([this] {
-    std::vector<std::array<double, 3>> places;
-    std::vector<std::uint32_t> loose;
-    const std::vector<std::array<std::uint32_t, 2>> threads = find_threads(*this);
-    std::vector<bool> is_joined(slots());
-    for (const TriangleSurface::Triangle& triangle : surface) {
-      for (const std::uint32_t corner : triangle) is_joined[corner] = true;
-    }
-    for (const auto& [a, b] : threads) is_joined[a] = is_joined[b] = true;
-    for (std::uint32_t slot = 0; slot < slots(); ++slot) {
-      const kernels::Vector x = initial_position[slot];
-      places.push_back({x.x, x.y, x.z});
-      if (!is_joined[slot] && inverse_mass[slot] > 0) loose.push_back(slot);
-    }
-    return make_triangle_surface(surface, places, loose, threads);
-  });
 }
 
 std::vector<Link> links_of(const ConstraintStore& store, std::size_t count) {

@@ -6,6 +6,8 @@
 namespace weft {
 namespace {
 
+using kernels::kLanes;
+
 constexpr std::uint32_t kLargestGap = kLanes;
 
 /// A vector of a run costs about as much as this many gathered constraints, so that a run must have

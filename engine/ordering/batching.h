@@ -1,10 +1,13 @@
 /// The second half of making an Ordering: batches of runs and singles.
 #pragma once
 
+#include <weft/weft.h>
+
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "engine/ordering/ordering.h"
+#include "kernels/runs.h"
 
 namespace weft {
 
@@ -15,8 +18,8 @@ struct Joint {
 };
 
 struct PlannedBatch {
-  std::vector<Joint> joints;  // runs, then singles
-  std::vector<Run> runs;      // Run::constraint counts from the first joint
+  std::vector<Joint> joints;       // runs, then singles
+  std::vector<kernels::Run> runs;  // Run::constraint counts from the first joint
   std::uint32_t singles = 0;
   std::size_t links_in_runs = 0;
 };

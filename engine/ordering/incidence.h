@@ -1,13 +1,20 @@
-/// The links that meet at each particle.
+/// Links, and those that meet at each particle.
 #pragma once
+
+#include <weft/weft.h>
 
 #include <cstdint>
 #include <span>
 
 #include "engine/lists.h"
-#include "engine/ordering/ordering.h"
 
 namespace weft {
+
+/// A constraint to be placed: its two particles and its kind.
+struct Link {
+  std::uint32_t a = 0, b = 0;
+  ConstraintKind kind = ConstraintKind::distance;
+};
 
 /// The links at each particle, ascending.
 inline Lists links_at(std::size_t particles, std::span<const Link> links) {

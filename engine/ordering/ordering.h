@@ -27,6 +27,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/ordering/incidence.h"
 #include "kernels/runs.h"
 
 namespace weft {
@@ -44,12 +45,6 @@ struct Batch {
 struct Tile {
   std::uint32_t first_slot = 0, last_slot = 0;
   std::uint32_t first_batch = 0, last_batch = 0;
-};
-
-/// A constraint to be placed: its two particles and its kind.
-struct Link {
-  std::uint32_t a = 0, b = 0;
-  ConstraintKind kind = ConstraintKind::distance;
 };
 
 struct Ordering {

@@ -23,6 +23,8 @@
 namespace weft {
 namespace {
 
+using kernels::kLanes;
+
 constexpr double kLargestWaste = 1.2;  // slots of a band of rows for each of its particles
 
 // --------------------------------------------------------------------------------------- rows

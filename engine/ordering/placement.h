@@ -9,7 +9,6 @@
 
 #include "engine/ordering/incidence.h"
 #include "engine/ordering/lattice.h"
-#include "engine/ordering/ordering.h"
 
 namespace weft {
 

@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "engine/ordering/ordering.h"
 #include "engine/ordering/placement.h"
 
 namespace weft {

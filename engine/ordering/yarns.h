@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/ordering/ordering.h"
+#include "engine/ordering/incidence.h"
 
 namespace weft {
 

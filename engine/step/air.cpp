@@ -72,8 +72,6 @@ Vector resisted_acceleration(const State& s, std::size_t slot, Vector x, Vector 
 
 }  // namespace
 
-bool is_resisted(const Model& model) { return model.has_air() || model.damping.motion > 0; }
-
 void find_resistance(State& s, double c, double h, Team& team) {
   find_resistance(s, s.position.view(), s.velocity.view(), c, h, team);
 }

@@ -33,8 +33,6 @@
 
 namespace weft {
 
-/// Whether velocities cause forces.
-bool is_resisted(const Model& model);
 /// State::total_force during h from here on, with the rate of decay c, but for pressures; and the
 /// ram pressure. Only where State::total_force has room.
 void find_resistance(State& s, double c, double h, Team& team);

@@ -10,7 +10,6 @@
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
-#include "engine/step/air.h"
 #include "engine/step/motion.h"
 #include "engine/tuning.h"
 
@@ -161,27 +160,6 @@ void catch_wind(State& s, VectorsView x, VectorsView v) {
 }
 
 }  // namespace
-
-bool presses(const State& s) { return !s.pressures.empty() || s.model->has_ram(); }
-
-void make_room_for_pressure(State& s) {
-  const Model& model = *s.model;
-  const bool has_pressure = presses(s);
-  const auto gives_room = [&](kernels::Vectors& v, bool needed) {
-    if ((v.size() > 0) != needed) v.resize(needed ? model.slots() : 0);
-  };
-  gives_room(s.total_force, is_resisted(model) || has_pressure);
-  gives_room(s.air_from, model.has_air() || has_pressure);
-  gives_room(s.air_impulse, model.has_air() || has_pressure);
-  for (kernels::Vectors* each : {&s.pressed.beside, &s.pressed.held, &s.pressed.before})
-    gives_room(*each, has_pressure);
-  gives_room(s.pressed.area, std::ranges::any_of(s.pressures, &Pressure::gas));
-  for (std::vector<double>* each : {&s.pressed.given, &s.pressed.volume, &s.pressed.volume_before})
-    each->resize(s.pressures.size());
-  const std::size_t pieces = model.has_ram() ? model.air.is_open.size() : 0;
-  s.pressed.ram.resize(pieces);
-  s.pressed.caught.resize(pieces);
-}
 
 void find_ram(State& s, VectorsView x, VectorsView v, double h) {
   if (!s.model->has_ram()) return;

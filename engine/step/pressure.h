@@ -28,10 +28,6 @@ namespace weft {
 
 class SmallSteps;
 
-/// Whether triangles feel a pressure.
-bool presses(const State& s);
-/// State::pressed has the room that it needs, and total_force.
-void make_room_for_pressure(State& s);
 /// Air::ram, of pieces at x with the velocities v, for a time h from here on.
 void find_ram(State& s, kernels::VectorsView x, kernels::VectorsView v, double h);
 /// 1/s, at which ram pressure would take the velocity of a piece that nothing else holds, where the

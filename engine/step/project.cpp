@@ -10,22 +10,13 @@
 #include "engine/step/exact_substep.h"
 #include "engine/step/fast_springs.h"
 #include "engine/step/motion.h"
+#include "engine/step/report_errors.h"
 #include "engine/step/reporting.h"
 #include "engine/step/small_step.h"
 #include "engine/tuning.h"
 
 namespace weft {
 namespace {
-
-/// Springs that are out of shape are no error.
-double largest_rigid_strain(const State& s) {
-  const ConstraintStore& store = s.model->constraints;
-  double most = 0;
-  for (std::size_t c = 0; c < store.size(); ++c) {
-    if (store.compliance[c] == 0) most = std::max(most, strain_of(*s.model, s.position, c));
-  }
-  return most;
-}
 
 bool is_out_of_tolerance(State& s, Team& team) {
   if (s.anchors.largest_excess(s.model->anchors, s.position, false) > s.settings.contact_tolerance)
@@ -200,23 +191,6 @@ void explain(State& s, double h, StepReport& report, Team& team) {
   report.substeps = 0;
   report.pin_work = 0;
   worsen(report, input ? Status::non_finite_input : Status::non_finite);
-}
-
-void report_errors(State& s, kernels::Vectors& x, bool ends, StepReport& report, Team& team) {
-  Strain strain = s.measure->strain(x.view(), team);
-  if (!s.model->constraints.has_springs())
-    report.max_error = strain.max;
-  else if (!committed(report.status))
-    report.max_error = largest_rigid_strain(s);
-  add_membrane_strain(*s.model, x, strain);
-  report.max_strain = strain.max;
-  report.rms_strain = strain.rms;
-  report.worst_constraint = strain.worst_constraint;
-  report.max_shear = strain.max_shear;
-  report.worst_element = strain.worst_element;
-  report.contacts = static_cast<int>(s.contacts.count());
-  report.max_penetration = s.measure->penetration(x.view(), s.contacts);
-  report.max_anchor_error = s.anchors.largest_excess(s.model->anchors, x, ends);
 }
 
 }  // namespace weft

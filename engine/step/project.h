@@ -25,8 +25,4 @@ void project(State& s, const OutOfPlace& what, double dt, StepReport& report, Te
 /// that would have happened without any constraint.
 void explain(State& s, double h, StepReport& report, Team& team);
 
-/// The true errors at x, where a step ends or where it begins. The error of the laws of springs is
-/// told by their solver.
-void report_errors(State& s, kernels::Vectors& x, bool ends, StepReport& report, Team& team);
-
 }  // namespace weft

@@ -16,7 +16,7 @@
 #include "engine/step/frame_spheres.h"
 #include "engine/step/motion.h"
 #include "engine/step/pin_work.h"
-#include "engine/step/project.h"
+#include "engine/step/report_errors.h"
 #include "engine/step/reporting.h"
 #include "engine/tuning.h"
 

@@ -11,10 +11,8 @@
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/sweeps/sweeps.h"
 #include "engine/solvers/yarn/yarn_solver.h"
-#include "engine/step/air.h"
 #include "engine/step/choose_solver.h"
 #include "engine/step/fast_springs.h"
-#include "engine/step/pressure.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -54,7 +52,7 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
   if (model->has_air()) {
     resistances.resize(model->air.triangles.size());
   }
-  make_room_for_pressure(*this);
+  make_room_for_pressure();
   if (model->constraints.has_springs() && settings.solver != Solver::small_steps) {
     laws.emplace(model->constraints);
   }
@@ -74,6 +72,24 @@ int State::threads_worth_having() const {
   const int most = settings.threads > 0 ? settings.threads : kMaxThreads;
   const std::size_t worth = model->slots() / tuning::kLeastSlotsPerThread;
   return std::max(1, static_cast<int>(std::min(worth, static_cast<std::size_t>(most))));
+}
+
+void State::make_room_for_pressure() {
+  const bool has_pressure = presses(*this);
+  const auto gives_room = [&](kernels::Vectors& v, bool needed) {
+    if ((v.size() > 0) != needed) v.resize(needed ? model->slots() : 0);
+  };
+  gives_room(total_force, is_resisted(*model) || has_pressure);
+  gives_room(air_from, model->has_air() || has_pressure);
+  gives_room(air_impulse, model->has_air() || has_pressure);
+  for (kernels::Vectors* each : {&pressed.beside, &pressed.held, &pressed.before})
+    gives_room(*each, has_pressure);
+  gives_room(pressed.area, std::ranges::any_of(pressures, &Pressure::gas));
+  for (std::vector<double>* each : {&pressed.given, &pressed.volume, &pressed.volume_before})
+    each->resize(pressures.size());
+  const std::size_t pieces = model->has_ram() ? model->air.is_open.size() : 0;
+  pressed.ram.resize(pieces);
+  pressed.caught.resize(pieces);
 }
 
 void State::make_solvers() {
@@ -120,7 +136,7 @@ void State::copy(const State& from) {
 void State::take(LastingState&& from, const Settings& its) {
   const bool same = alike(settings, its);
   LastingState::operator=(std::move(from));
-  make_room_for_pressure(*this);
+  make_room_for_pressure();
   if (!same) forget_past();
   if (!same || !settings.sleep) rest.wake();
 }

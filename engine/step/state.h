@@ -191,6 +191,8 @@ struct State : LastingState {
   /// Goes on from one of another model of the same particles. Particles that the models do not
   /// agree on are at rest if fixed, and have the speed of their last move if free.
   void go_on_from(const State& from);
+  /// Gives `pressed` the room that pressures need, and total_force.
+  void make_room_for_pressure();
   std::size_t bytes() const;
   /// How many threads a step of it is worth, where Settings::threads allows them.
   int threads_worth_having() const;
@@ -198,6 +200,11 @@ struct State : LastingState {
  private:
   void make_solvers();
 };
+
+/// Whether velocities cause forces (air.h).
+inline bool is_resisted(const Model& model) { return model.has_air() || model.damping.motion > 0; }
+/// Whether triangles feel a pressure (pressure.h).
+inline bool presses(const State& s) { return !s.pressures.empty() || s.model->has_ram(); }
 
 /// Settings for which the memory of solvers, and the known past, are worth something.
 template <class Any>

@@ -13,6 +13,7 @@
 #include "engine/step/plan.h"
 #include "engine/step/pressure.h"
 #include "engine/step/project.h"
+#include "engine/step/report_errors.h"
 #include "engine/step/reporting.h"
 #include "engine/step/small_step.h"
 #include "engine/tuning.h"

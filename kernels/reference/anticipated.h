@@ -29,7 +29,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "kernels/reference/relax.h"
+#include "kernels/reference/workspace.h"
 
 namespace weft::reference {
 

@@ -16,7 +16,7 @@
 
 #include <algorithm>
 
-#include "kernels/reference/relax.h"
+#include "kernels/reference/workspace.h"
 
 namespace weft::reference {
 

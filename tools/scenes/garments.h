@@ -5,7 +5,7 @@
 
 #include "tools/scenes/layout.h"
 #include "tools/scenes/pattern.h"
-#include "tools/scenes/scenes.h"
+#include "tools/scenes/scene.h"
 
 namespace weft::scenes {
 

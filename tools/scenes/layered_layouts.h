@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tools/scenes/layout.h"
-#include "tools/scenes/scenes.h"
+#include "tools/scenes/scene.h"
 
 namespace weft::scenes {
 

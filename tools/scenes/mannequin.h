@@ -4,7 +4,7 @@
 #include <weft/result.h>
 
 #include "tools/scenes/layout.h"
-#include "tools/scenes/scenes.h"
+#include "tools/scenes/scene.h"
 
 namespace weft::scenes {
 

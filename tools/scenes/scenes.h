@@ -64,28 +64,12 @@
 
 #include <weft/mesh.h>
 
-#include <optional>
 #include <span>
 #include <string_view>
-#include <vector>
 
-#include "tools/scenes/mesh.h"
-#include "tools/scenes/scene_body.h"
+#include "tools/scenes/scene.h"
 
 namespace weft::scenes {
-
-struct Options {
-  int size = 20;           ///< N; particles in a line for "chain"
-  double slack = 0.05;     ///< sphere_drop: how much longer the sheet is than the gap it spans
-  double sphere_mass = 1;  ///< sphere_drop, kg
-  double end_mass = 1;     ///< chain, kg of the last particle
-  bool diagonals = false;  ///< both diagonals of every four-sided face are ropes; not for "chain"
-  bool ropes = false;      ///< every edge is a rope; not for "chain"
-  std::optional<Material> material = std::nullopt;
-};
-
-/// What fabric is made of if nothing else is asked for.
-inline constexpr const char* kFabric = "cotton";
 
 struct BuiltIn {
   std::string_view name;
@@ -97,13 +81,6 @@ struct BuiltIn {
 /// cushion, tunic, skirt, mannequin, mannequin_mesh, stack, fold, curtain, twist, ribbon, funnel,
 /// outfit.
 std::span<const BuiltIn> list();
-
-struct Scene {
-  SceneDescription description;
-  tools::Mesh mesh;  ///< what pictures show: vertices and faces, or the lines of a chain
-  std::vector<tools::SceneBody> bodies = {};
-  std::vector<tools::PinMove> moves = {};
-};
 
 /// An unknown name or an option out of range is an error.
 Result<Scene> make_scene(std::string_view name, const Options& options);

@@ -6,6 +6,7 @@
 
 #include "engine/solvers/small_steps/bending_factor.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
+#include "engine/solvers/small_steps/substep_formula.h"
 #include "engine/tuning.h"
 
 namespace weft {

@@ -25,7 +25,7 @@
 
 #include "engine/model/model.h"
 #include "engine/solvers/small_steps/bending_system.h"
-#include "engine/solvers/small_steps/small_steps.h"
+#include "engine/solvers/small_steps/frame_to_do.h"
 #include "engine/tuning.h"
 
 namespace weft {

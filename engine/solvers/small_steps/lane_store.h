@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/parallel/team.h"
+#include "engine/solvers/small_steps/frame_to_do.h"
 #include "engine/solvers/small_steps/lane_points.h"
 #include "engine/solvers/small_steps/simd_anchors.h"
 #include "engine/solvers/small_steps/simd_bending.h"
@@ -18,6 +19,7 @@
 #include "engine/solvers/small_steps/simd_links.h"
 #include "engine/solvers/small_steps/simd_membrane.h"
 #include "engine/solvers/small_steps/substep.h"
+#include "engine/turn.h"
 #include "kernels/simd/table.h"
 
 namespace weft {

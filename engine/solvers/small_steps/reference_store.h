@@ -10,9 +10,11 @@
 #include "engine/parallel/team.h"
 #include "engine/solvers/small_steps/bending_frame.h"
 #include "engine/solvers/small_steps/bending_system.h"
+#include "engine/solvers/small_steps/frame_to_do.h"
 #include "engine/solvers/small_steps/point_particles.h"
 #include "engine/solvers/small_steps/reference_bodies.h"
 #include "engine/solvers/small_steps/substep.h"
+#include "engine/turn.h"
 #include "kernels/reference/bending.h"
 #include "kernels/reference/small_steps.h"
 

@@ -317,10 +317,6 @@ class StoredSmallSteps final : public SmallSteps {
 
 }  // namespace
 
-bool are_slots(const Model& model, std::span<const std::uint32_t> slots) {
-  return std::ranges::is_sorted(slots) && (slots.empty() || slots.back() < model.slots());
-}
-
 std::unique_ptr<SmallSteps> make_small_steps(const Model& model, const Settings& settings,
                                              const simd::Table& table) {
   if (settings.backend == Backend::reference)

@@ -80,10 +80,6 @@ struct SmallStepsLayout {
   std::size_t bytes() const;
 };
 
-SmallStepsLayout make_small_steps_layout(const Model& model);
-/// That of a model which differs from `layout`'s in the compliances of bending elements alone.
-SmallStepsLayout with_bending_of(const Model& model, SmallStepsLayout layout);
-
 /// The particles of a yarn, in the order of its constraints.
 std::vector<std::uint32_t> slots_of(const ConstraintStore& store,
                                     std::span<const std::uint32_t> links);

@@ -44,9 +44,6 @@
 
 namespace weft {
 
-class Model;
-struct SmallStepsLayout;
-
 /// The load on the pins.
 struct SmallStepsLoad {
   /// A yarn, or another way along constraints, between two pins.
@@ -61,8 +58,6 @@ struct SmallStepsLoad {
   std::vector<Span> spans;
   std::vector<Span> ways;  // the shortest between neighbouring pins, along what cannot lengthen
 };
-
-SmallStepsLoad find_load(const Model& model, const SmallStepsLayout& layout);
 
 /// How many times its weight a cloth pulls at its pins at the bottom of a swing.
 inline constexpr double kWeightsOfSwing = 3;

@@ -2,7 +2,10 @@
 /// (lane_store.h, reference_store.h) both see it.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/bytes_of.h"
@@ -10,8 +13,8 @@
 #include "engine/solvers/small_steps/arrivals.h"
 #include "engine/solvers/small_steps/laws.h"
 #include "engine/solvers/small_steps/local_passes.h"
-#include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
+#include "engine/solvers/small_steps/substep_formula.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -52,6 +55,11 @@ struct Substep {
     return passes.bytes() + bytes_of(touched) + bytes_of(arrived) + bytes_of(jolts);
   }
 };
+
+/// Whether slots that were read are some of the model's, ascending.
+inline bool are_slots(const Model& model, std::span<const std::uint32_t> slots) {
+  return std::ranges::is_sorted(slots) && (slots.empty() || slots.back() < model.slots());
+}
 
 /// How far a sweep goes with rigid constraints.
 struct Relaxation {

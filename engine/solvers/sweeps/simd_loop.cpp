@@ -7,20 +7,20 @@
 
 namespace weft {
 
-SimdLoop::SimdLoop(SimdSolver& solver, const Unknowns& unknowns, Team& team)
-    : SimdLoop(solver, unknowns.velocities() ? solver.velocities_ : solver.positions_, unknowns,
+SimdLoop::SimdLoop(SimdSystem& system, const Unknowns& unknowns, Team& team)
+    : SimdLoop(system, unknowns.velocities() ? system.velocities_ : system.positions_, unknowns,
                team) {}
 
-SimdLoop::SimdLoop(SimdSolver& solver, ScaledConstraints& constraints, const Unknowns& unknowns,
+SimdLoop::SimdLoop(SimdSystem& system, ScaledConstraints& constraints, const Unknowns& unknowns,
                    Team& team)
-    : s_(solver),
-      layout_(solver.layout_),
-      neighbours_(solver.neighbours_),
-      table_(solver.table_),
+    : s_(system),
+      layout_(system.layout_),
+      neighbours_(system.neighbours_),
+      table_(system.table_),
       unknowns_(unknowns),
-      r_(solver.relaxation(constraints)),
+      r_(system.relaxation(constraints)),
       contacts_(r_),
-      g_(solver.geometry(unknowns.x, constraints)),
+      g_(system.geometry(unknowns.x, constraints)),
       contact_geometry_(g_),
       team_(team) {
   ContactLanes& c = s_.contacts_;

@@ -1,7 +1,8 @@
 /// The three verbs of kernels/loop.h on the vector kernels.
 #pragma once
 
-#include "engine/solvers/sweeps/simd_solver.h"
+#include "engine/parallel/team.h"
+#include "engine/solvers/sweeps/simd_system.h"
 
 namespace weft {
 
@@ -14,7 +15,7 @@ class SimdLoop {
     bool velocities() const { return v.x != nullptr; }
   };
 
-  SimdLoop(SimdSolver& solver, const Unknowns& unknowns, Team& team);
+  SimdLoop(SimdSystem& system, const Unknowns& unknowns, Team& team);
 
   void renew();
   kernels::Sweep sweep();
@@ -33,7 +34,7 @@ class SimdLoop {
   struct Share {
     std::size_t first = 0, last = 0;  // tiles
   };
-  SimdLoop(SimdSolver& solver, ScaledConstraints& constraints, const Unknowns& unknowns,
+  SimdLoop(SimdSystem& system, ScaledConstraints& constraints, const Unknowns& unknowns,
            Team& team);
   bool skips() const { return !s_.changed_.empty(); }
   bool masks() const { return !s_.mask_.empty(); }
@@ -83,7 +84,7 @@ class SimdLoop {
   void mark_neighbours(std::size_t chunk);
   void mark_slots(const std::uint32_t* slots, std::size_t first, std::size_t last);
 
-  SimdSolver& s_;
+  SimdSystem& s_;
   const SimdLayout& layout_;
   const ChunkNeighbours& neighbours_;
   const simd::Table& table_;

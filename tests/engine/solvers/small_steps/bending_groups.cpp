@@ -10,6 +10,7 @@
 #include "engine/model/model.h"
 #include "engine/solvers/small_steps/bending_frame.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
+#include "engine/solvers/small_steps/substep_formula.h"
 #include "engine/tuning.h"
 #include "tests/support/bending.h"
 #include "tests/support/clothes.h"

@@ -6,7 +6,7 @@
 #include "engine/model/model.h"
 #include "engine/parallel/team.h"
 #include "engine/solvers/sweeps/simd_loop.h"
-#include "engine/solvers/sweeps/simd_solver.h"
+#include "engine/solvers/sweeps/simd_system.h"
 #include "tests/support/clothes.h"
 #include "tests/support/isas.h"
 #include "tests/support/mesh_scenes.h"
@@ -27,11 +27,11 @@ Passed pass(const Model& model, int passes, bool in_trips, int threads, bool pro
   Settings settings;
   settings.iterations = passes;
   settings.anticipate_products = products;
-  SimdSolver solver(model, settings, simd::table(supported_isas().back()));
+  SimdSystem system(model, settings, simd::table(supported_isas().back()));
   Passed passed{model.initial_position, {}};
   for (std::size_t i = 0; i < passed.x.size(); i += 7) passed.x.z[i] += 0.01;
   in_team_of(threads, [&](Team& team) {
-    SimdLoop loop(solver, {.x = passed.x.view()}, team);
+    SimdLoop loop(system, {.x = passed.x.view()}, team);
     loop.renew();
     if (in_trips)
       passed.sweep = loop.sweeps(passes);
