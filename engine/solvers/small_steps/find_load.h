@@ -1,4 +1,4 @@
-/// What of a cloth hangs on its pins (small_steps_load.h).
+/// Finds the load on the pins of a cloth (small_steps_load.h).
 #pragma once
 
 #include "engine/solvers/small_steps/small_steps_load.h"
