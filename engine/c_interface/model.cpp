@@ -1,29 +1,17 @@
 /// Scenes, models and saved bytes in C.
 #include "engine/c_interface/arrays.h"
 #include "engine/c_interface/handles.h"
+#include "engine/c_interface/parts.h"
 #include "engine/c_interface/structs.h"
 
 namespace weft::c_interface {
 namespace {
 
 weft_model_info info_of(const ModelInfo& info) {
-  return {.size = sizeof(weft_model_info),
-          .particles = info.particles,
-          .constraints = info.constraints,
-          .inert_constraints = info.inert_constraints,
-          .ropes = info.ropes,
-          .compliant = info.compliant,
-          .membrane_elements = info.membrane_elements,
-          .bending_elements = info.bending_elements,
-          .anchors = info.anchors,
-          .seams = info.seams,
-          .surface_triangles = info.surface_triangles,
-          .air_triangles = info.air_triangles,
-          .spheres = info.spheres,
-          .colours = info.colours,
-          .tiles = info.tiles,
-          .run_share = info.run_share,
-          .bytes = info.bytes};
+  weft_model_info out{};
+  out.size = sizeof out;
+  write_part(info, out);
+  return out;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "engine/c_interface/pressure_structs.h"
 
 #include "engine/c_interface/arrays.h"
+#include "engine/c_interface/parts.h"
 #include "engine/c_interface/structs.h"
 
 namespace weft::c_interface {
@@ -14,23 +15,20 @@ Result<Pressure> read_pressure(const std::string& name, const weft_pressure* pre
   const auto triangles =
       in.needed<std::uint32_t>(name + ".triangles", p.triangles, p.triangle_count);
   if (!in.are_good()) return in.error();
-  return Pressure{.pressure = p.pressure,
-                  .triangles = list_of(triangles),
-                  .gas = p.gas != 0,
-                  .volume = p.volume,
-                  .ambient = p.ambient};
+  Pressure part{.triangles = list_of(triangles)};
+  read_part(p, part);
+  return part;
 }
 
 }  // namespace
 
 weft_pressure pressure_of(const Pressure& part) {
-  return {.size = sizeof(weft_pressure),
-          .pressure = part.pressure,
-          .triangle_count = part.triangles.size(),
-          .triangles = part.triangles.data(),
-          .gas = part.gas ? 1 : 0,
-          .volume = part.volume,
-          .ambient = part.ambient};
+  weft_pressure out{};
+  out.size = sizeof out;
+  out.triangle_count = part.triangles.size();
+  out.triangles = part.triangles.data();
+  write_part(part, out);
+  return out;
 }
 
 Result<std::vector<Pressure>> read_pressures(std::size_t count, const weft_pressure* pressures) {

@@ -23,6 +23,7 @@ void for_each_joint(const SceneDescription& scene, Join join) {
     join(element.particles[0], element.particles[2]);
   }
   for (const Seam& seam : scene.seams) join(seam.a, seam.b);
+  for (const Tether& tether : scene.tethers) join(tether.particle, tether.pin);
 }
 
 /// Spheres that are joined to nothing.

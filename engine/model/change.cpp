@@ -24,6 +24,8 @@ class Describer {
     describe_air();
     description_.pressures = model_.pressures;
     description_.anchors = model_.anchors.described;
+    description_.tethers = model_.tethers;
+    description_.tether_slack = model_.tether_slack;
     describe_seams();
     description_.damping = model_.damping;
     description_.friction = model_.friction;

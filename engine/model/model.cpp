@@ -1,8 +1,10 @@
 #include "engine/model/model.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/bytes_of.h"
+#include "engine/model/nearest.h"
 #include "engine/model/pressures.h"
 #include "engine/model/validate.h"
 #include "kernels/reference/relax.h"
@@ -11,6 +13,27 @@ namespace weft {
 namespace {
 
 std::size_t bytes_of_bits(const std::vector<bool>& bits) { return bits.capacity() / 8; }
+
+/// Those whose pin is fixed, and their particle is not; and those of tether_slack behind them.
+std::vector<Tether> acting_tethers(const SceneDescription& d) {
+  std::vector<Tether> acting;
+  if (d.tethers.empty() && std::isinf(d.tether_slack)) return acting;
+  std::vector<bool> is_fixed(d.positions.size()), is_held(is_fixed.size());
+  for (const std::uint32_t pin : d.fixed) is_fixed[pin] = is_held[pin] = true;
+  for (const Anchor& anchor : d.anchors) is_held[anchor.particle] = true;
+  for (const Tether& tether : d.tethers) {
+    if (!is_fixed[tether.pin] || is_held[tether.particle]) continue;
+    acting.push_back(tether);
+    is_held[tether.particle] = true;
+  }
+  if (std::isinf(d.tether_slack)) return acting;
+  const std::vector<Nearest> nearest = find_nearest_pins(d);
+  for (std::uint32_t i = 0; i < nearest.size(); ++i) {
+    if (nearest[i].end == kNoIndex || is_held[i]) continue;
+    acting.push_back({i, nearest[i].end, (1 + d.tether_slack) * nearest[i].length});
+  }
+  return acting;
+}
 
 std::uint64_t pair_of(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a} << 32 | b; }
 
@@ -204,18 +227,26 @@ void Model::store_bending(const SceneDescription& d) {
 }
 
 void Model::store_anchors(const SceneDescription& d) {
-  if (d.anchors.empty()) return;
+  tethers = d.tethers;
+  tether_slack = d.tether_slack;
   anchors.described = d.anchors;
-  anchors.at.assign(slots(), kNoIndex);
-  for (const Anchor& anchor : d.anchors) {
-    const std::uint32_t slot = ordering.slot_of[anchor.particle];
+  const auto add = [&](std::uint32_t particle, const reference::AnchorLimits& limits) {
+    const std::uint32_t slot = ordering.slot_of[particle];
+    if (anchors.at.empty()) anchors.at.assign(slots(), kNoIndex);
     anchors.at[slot] = static_cast<std::uint32_t>(anchors.size());
     anchors.slot.push_back(slot);
+    anchors.limits.push_back(limits);
+  };
+  for (const Anchor& anchor : d.anchors) {
     const bool has_backstop = anchor.backstop_radius > 0;
-    anchors.limits.push_back({.most = anchor.max_distance,
-                              .distance = anchor.backstop_distance,
-                              .curvature = has_backstop ? 1 / anchor.backstop_radius : 0,
-                              .has_backstop = has_backstop});
+    add(anchor.particle, {.most = anchor.max_distance,
+                          .distance = anchor.backstop_distance,
+                          .curvature = has_backstop ? 1 / anchor.backstop_radius : 0,
+                          .has_backstop = has_backstop});
+  }
+  for (const Tether& tether : acting_tethers(d)) {
+    add(tether.particle, {.most = tether.length});
+    anchors.pins.push_back(ordering.slot_of[tether.pin]);
   }
 }
 
@@ -391,7 +422,7 @@ std::size_t SeamStore::bytes() const {
 }
 
 std::size_t AnchorStore::bytes() const {
-  return bytes_of(slot) + bytes_of(limits) + bytes_of(described) + bytes_of(at);
+  return bytes_of(slot) + bytes_of(limits) + bytes_of(described) + bytes_of(pins) + bytes_of(at);
 }
 
 reference::AnchorPose pose_of(Vec3 point, Vec3 normal) {
@@ -413,11 +444,11 @@ std::size_t Model::bytes() const {
   return initial_position.bytes() + initial_velocity.bytes() + bytes_of(mass) +
          bytes_of(inverse_mass) + bytes_of(radius) + bytes_of(hub) + bytes_of(hubs) +
          bytes_of(pins) + bytes_of(holds) + bytes_of(spheres) + bytes_of(is_sphere) +
-         bytes_of(joined_) + ordering.bytes() + constraints.bytes() + membrane.bytes() +
-         bending.bytes() + inert.bytes() + anchors.bytes() + seams.bytes() + bytes_of(surface) +
-         bytes_of(air.triangles) + air.at.bytes() + reference_.bytes() + simd_.bytes() +
-         chunk_neighbours_.bytes() + pulls_.bytes() + direct_.bytes() + yarns_.bytes() +
-         small_steps_.bytes() + bending_fronts_.bytes() + touched_surface_.bytes();
+         bytes_of(joined_) + bytes_of(tethers) + ordering.bytes() + constraints.bytes() +
+         membrane.bytes() + bending.bytes() + inert.bytes() + anchors.bytes() + seams.bytes() +
+         bytes_of(surface) + bytes_of(air.triangles) + air.at.bytes() + reference_.bytes() +
+         simd_.bytes() + chunk_neighbours_.bytes() + pulls_.bytes() + direct_.bytes() +
+         yarns_.bytes() + small_steps_.bytes() + bending_fronts_.bytes() + touched_surface_.bytes();
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {
@@ -435,7 +466,7 @@ ModelInfo describe(const Model& model) {
               std::ranges::count_if(s.compliance, [](double c) { return c > 0; })),
           .membrane_elements = model.membrane.size(),
           .bending_elements = model.bending.size(),
-          .anchors = model.anchors.size(),
+          .anchors = model.anchors.described.size(),
           .seams = model.seams.size(),
           .surface_triangles = model.surface.size(),
           .air_triangles = model.air.triangles.size(),
@@ -443,7 +474,8 @@ ModelInfo describe(const Model& model) {
           .colours = model.ordering.colours,
           .tiles = model.ordering.tiles.size(),
           .run_share = model.ordering.run_share,
-          .bytes = model.bytes()};
+          .bytes = model.bytes(),
+          .tethers = model.anchors.pins.size()};
 }
 
 }  // namespace weft

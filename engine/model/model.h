@@ -121,12 +121,14 @@ struct InertStore {
   std::size_t bytes() const;
 };
 
-/// Anchors (weft.h) in the order of the description.
+/// Anchors (weft.h) in the order of the description, and behind them tethers that act: anchors
+/// whose point is a pin.
 struct AnchorStore {
   std::vector<std::uint32_t> slot;
   std::vector<reference::AnchorLimits> limits;
   std::vector<Anchor> described;
-  std::vector<std::uint32_t> at;  // per slot: its anchor, or kNoIndex; empty without anchors
+  std::vector<std::uint32_t> pins;  // slots, of the tethers
+  std::vector<std::uint32_t> at;    // per slot: its anchor, or kNoIndex; empty without anchors
   std::size_t size() const { return slot.size(); }
   std::size_t bytes() const;
 };
@@ -180,6 +182,8 @@ class Model {
   BendingStore bending;
   AnchorStore anchors;
   SeamStore seams;
+  std::vector<Tether> tethers;  // as described
+  double tether_slack = 0;
   std::vector<std::array<std::uint32_t, 3>> surface;  // triangles, between slots
   AirStore air;
   std::vector<Pressure> pressures;  // of triangles of `surface`; volumes of gas are known
@@ -204,9 +208,9 @@ class Model {
   /// Whether anything obeys a law with a compliance: springs or triangles of fabric.
   bool has_laws() const { return constraints.has_springs() || membrane.size() > 0; }
   bool has_spheres() const { return !spheres.empty(); }
-  /// The anchor of a particle; kNoIndex: none.
-  std::uint32_t anchor_of(std::uint32_t particle) const {
-    return anchors.at.empty() ? kNoIndex : anchors.at[ordering.slot_of[particle]];
+  /// Whether the particle has one; a tether is none.
+  bool has_anchor(std::uint32_t particle) const {
+    return !anchors.at.empty() && anchors.at[ordering.slot_of[particle]] < anchors.described.size();
   }
   bool has_air() const {
     return !air.triangles.empty() && air.density > 0 &&

@@ -13,8 +13,8 @@
 namespace weft {
 namespace {
 
-/// The version changes with whatever is written here.
-constexpr Kind kModel{{'w', 'e', 'f', 't', 'm', 'o', 'd', 'l'}, "model", 5};
+/// The version changes with whatever is written here, and so with each kind of element.
+constexpr Kind kModel{{'w', 'e', 'f', 't', 'm', 'o', 'd', 'l'}, "model", kListedInScenes};
 
 }  // namespace
 

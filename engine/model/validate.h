@@ -1,7 +1,11 @@
 /// Refused input, in one line of the form "field[index]: reason (value)".
 #pragma once
 
+#include <weft/scene_fields.h>
 #include <weft/weft.h>
+
+#include <string>
+#include <string_view>
 
 namespace weft {
 
@@ -9,11 +13,17 @@ class Model;
 
 Result<void> validate(const SceneDescription& description);
 Result<void> validate(const Changes& changes, const Model& model);
-/// Checks a description, except its particles, constraints and spheres.
+/// Checks all lists of elements, and values of the scene itself.
+Result<void> validate_elements(const SceneDescription& description);
+/// Checks a description, except its particles, elements and spheres.
 Result<void> validate_material(const SceneDescription& description);
-Result<void> validate_anchors(const SceneDescription& description);
 Result<void> validate_damping(const Damping& damping);
-Result<void> validate_seams(const SceneDescription& description);
+Result<void> validate_number(Values values, const std::string& field, double value);
+/// Particles of the scene, and no two alike.
+Result<void> validate_corners(const std::string& field, std::span<const std::uint32_t> corners,
+                              std::size_t particles);
+/// Checks the normal of a backstop.
+Result<void> validate_normal(const std::string& field, Vec3 normal);
 /// Checks the places of all anchors; normals: or none.
 Result<void> validate_anchor_move(const Model& model, std::span<const Vec3> points,
                                   std::span<const Vec3> normals);

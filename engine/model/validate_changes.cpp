@@ -37,7 +37,7 @@ Result<void> validate_particles(std::string_view field, const std::vector<std::u
   Listed particles("particle", model.particles);
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (auto r = particles.take(element(field, i), list[i]); !r) return r;
-    if (model.anchor_of(list[i]) != kNoIndex)
+    if (model.has_anchor(list[i]))
       return refuse(element(field, i), "has an anchor", std::to_string(list[i]));
     const bool is_fixed = model.inverse_mass[model.ordering.slot_of[list[i]]] == 0;
     if (is_fixed != are_fixed) {

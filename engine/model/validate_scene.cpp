@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 
 #include "engine/model/validate.h"
@@ -12,7 +10,6 @@ namespace {
 /// So that places of particles, padding and all, have 32 bits, and so have places in lists of who
 /// is whose neighbour.
 constexpr std::size_t kMostParticles = std::size_t{1} << 28;
-constexpr std::size_t kMostConstraints = std::size_t{1} << 26;
 
 Result<void> validate_index_list(std::string_view field, std::span<const std::uint32_t> list,
                                  std::size_t particles) {
@@ -25,49 +22,6 @@ Result<void> validate_index_list(std::string_view field, std::span<const std::ui
     seen[list[i]] = true;
   }
   return {};
-}
-
-Result<void> validate_constraint(std::size_t index, const Constraint& c, std::size_t particles) {
-  const std::string field = element("constraints", index);
-  if (auto r = validate_particle(field + ".a", c.a, particles); !r) return r;
-  if (auto r = validate_particle(field + ".b", c.b, particles); !r) return r;
-  if (c.a == c.b) return refuse(field, "joins a particle to itself", std::to_string(c.a));
-  if (auto r = validate_kind(field + ".kind", c.kind); !r) return r;
-  if (auto r = validate_positive(field + ".rest_length", c.rest_length); !r) return r;
-  if (auto r = validate_square(field + ".rest_length", c.rest_length); !r) return r;
-  return validate_not_negative(field + ".compliance", c.compliance);
-}
-
-std::uint64_t key(const Constraint& c) {
-  const auto [low, high] = std::minmax(c.a, c.b);
-  return (std::uint64_t{low} << 32) | high;
-}
-
-Result<void> validate_no_duplicates(std::span<const Constraint> constraints) {
-  std::vector<std::uint32_t> order(constraints.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
-    return std::pair(key(constraints[i]), i) < std::pair(key(constraints[j]), j);
-  });
-  for (std::size_t k = 1; k < order.size(); ++k) {
-    const Constraint& c = constraints[order[k]];
-    if (key(c) != key(constraints[order[k - 1]])) continue;
-    return refuse(element("constraints", order[k]),
-                  "joins the same particles as " + element("constraints", order[k - 1]),
-                  std::to_string(c.a) + ", " + std::to_string(c.b));
-  }
-  return {};
-}
-
-Result<void> validate_constraints(std::span<const Constraint> constraints, std::size_t particles) {
-  if (constraints.size() > kMostConstraints) {
-    return refuse("constraints", "at most " + std::to_string(kMostConstraints),
-                  std::to_string(constraints.size()));
-  }
-  for (std::size_t i = 0; i < constraints.size(); ++i) {
-    if (auto r = validate_constraint(i, constraints[i], particles); !r) return r;
-  }
-  return validate_no_duplicates(constraints);
 }
 
 Result<void> validate_contacts(const SceneDescription& d) {
@@ -172,12 +126,9 @@ Result<void> validate(const SceneDescription& d) {
     if (auto r = validate_positive(element("masses", i), d.masses[i]); !r) return r;
     if (auto r = validate_square(element("masses", i), d.masses[i]); !r) return r;
   }
-  if (auto r = validate_gravity(d.gravity); !r) return r;
   if (auto r = validate_index_list("fixed", d.fixed, particles); !r) return r;
-  if (auto r = validate_constraints(d.constraints, particles); !r) return r;
+  if (auto r = validate_elements(d); !r) return r;
   if (auto r = validate_material(d); !r) return r;
-  if (auto r = validate_anchors(d); !r) return r;
-  if (auto r = validate_seams(d); !r) return r;
   return validate_contacts(d);
 }
 

@@ -2,7 +2,11 @@
 #pragma once
 
 #include <weft/report_fields.h>
+#include <weft/scene_fields.h>
 #include <weft/weft.h>
+
+#include <tuple>
+#include <type_traits>
 
 #include "engine/saving/archive.h"
 
@@ -15,57 +19,37 @@ void visit_fields(Is<Vec3> auto& v, auto& archive) {
 
 // scene.h
 
-void visit_fields(Is<Constraint> auto& constraint, auto& archive) {
-  auto& [a, b, rest_length, kind, compliance] = constraint;
-  archive(a, b, rest_length, kind, compliance);
+template <class T>
+concept SceneElement = std::tuple_size_v<decltype(kElementFields<std::remove_const_t<T>>)> >
+0;
+
+void visit_fields(SceneElement auto& element, auto& archive) {
+  using Its = std::remove_cvref_t<decltype(element)>;
+  for_each_element_field<Its>([&](const auto& field) { archive(element.*field.member); });
 }
 
-void visit_fields(Is<MembraneElement> auto& element, auto& archive) {
-  auto& [particles, rest, warp, weft, shear, kind] = element;
-  archive(particles, rest, warp, weft, shear, kind);
-}
+template <class T>
+concept ScenePart = !Is<T, SceneDescription> &&
+                    std::tuple_size_v<decltype(kPartFields<std::remove_const_t<T>>)> > 0;
 
-void visit_fields(Is<BendingElement> auto& element, auto& archive) {
-  auto& [particles, weights, rest, compliance, fold] = element;
-  archive(particles, weights, rest, compliance, fold);
-}
-
-void visit_fields(Is<Anchor> auto& anchor, auto& archive) {
-  auto& [particle, point, normal, max_distance, backstop_distance, backstop_radius] = anchor;
-  archive(particle, point, normal, max_distance, backstop_distance, backstop_radius);
-}
-
-void visit_fields(Is<Seam> auto& seam, auto& archive) {
-  auto& [a, b, time, max_force] = seam;
-  archive(a, b, time, max_force);
-}
-
-void visit_fields(Is<Damping> auto& damping, auto& archive) {
-  auto& [stretch, bending, motion] = damping;
-  archive(stretch, bending, motion);
-}
-
-void visit_fields(Is<Air> auto& air, auto& archive) {
-  auto& [triangles, density, drag, lift, wind, ram] = air;
-  archive(triangles, density, drag, lift, wind, ram);
-}
-
-void visit_fields(Is<Pressure> auto& part, auto& archive) {
-  auto& [pressure, triangles, gas, volume, ambient] = part;
-  archive(pressure, triangles, gas, volume, ambient);
-}
-
-void visit_fields(Is<SelfContact> auto& contact, auto& archive) {
-  auto& [on, thickness, friction, untangle] = contact;
-  archive(on, thickness, friction, untangle);
+void visit_fields(ScenePart auto& part, auto& archive) {
+  using Its = std::remove_cvref_t<decltype(part)>;
+  for_each_part_field<Its>([&](const auto& field) { archive(part.*field.member); });
 }
 
 void visit_fields(Is<SceneDescription> auto& scene, auto& archive) {
-  auto& [positions, velocities, masses, fixed, constraints, membrane, bending, anchors, seams,
-         surface, damping, air, pressures, friction, self_contact, gravity, spheres, radii] = scene;
-  archive(positions, velocities, masses, fixed, constraints, membrane, bending, anchors, seams,
-          surface, damping, air, pressures, friction, self_contact, gravity, spheres, radii);
+  archive(scene.positions, scene.velocities, scene.masses, scene.fixed, scene.surface,
+          scene.damping, scene.air, scene.pressures, scene.self_contact, scene.spheres,
+          scene.radii);
+  for_each_element_kind([&](const auto& kind) { archive(scene.*kind.list); });
+  for_each_part_field<SceneDescription>([&](const auto& field) { archive(scene.*field.member); });
 }
+/// Kinds of elements, and values of the scene itself.
+inline constexpr std::uint32_t kListedInScenes =
+    std::tuple_size_v<decltype(kElementKinds)> +
+    std::tuple_size_v<decltype(kPartFields<SceneDescription>)>;
+static_assert(detail::has_fields<SceneDescription, 11 + kListedInScenes>(),
+              "a field of SceneDescription is not saved");
 
 // body.h
 

@@ -18,6 +18,20 @@ Anchors::Anchors(const Model& model) {
   to_ = from_;
   most_from_ = most_before_ = most_to_;
   has_backstop_.assign(asked_.size(), 1);
+  tie(model.anchors, model.initial_position);
+}
+
+void Anchors::tie(const AnchorStore& store, const kernels::Vectors& x) {
+  const std::size_t described = asked_.size();
+  for (auto* poses : {&from_, &to_}) {
+    poses->resize(described);
+    for (const std::uint32_t pin : store.pins) poses->push_back({.point = x[pin]});
+  }
+  for (auto* most : {&most_from_, &most_before_, &most_to_}) {
+    most->resize(described);
+    for (std::size_t i = described; i < store.size(); ++i) most->push_back(store.limits[i].most);
+  }
+  has_backstop_.resize(store.size(), 1);
 }
 
 /// 0 and infinity stay.
@@ -41,7 +55,21 @@ void Anchors::scale(double scale) {
   limit(std::vector(asked_));
 }
 
-void Anchors::depart(const AnchorStore& store, const kernels::Vectors& x) {
+void Anchors::follow_pins(const AnchorStore& store, const kernels::Vectors& x,
+                          const kernels::Vectors& v, double dt) {
+  for (std::size_t i = 0; i < store.pins.size(); ++i) {
+    const std::uint32_t pin = store.pins[i];
+    const kernels::Vector way = dt * v[pin];
+    const std::size_t anchor = asked_.size() + i;
+    from_[anchor].point = x[pin];
+    to_[anchor].point = x[pin] + way;
+    moves_ = moves_ || dot(way, way) > 0;
+  }
+}
+
+void Anchors::depart(const AnchorStore& store, const kernels::Vectors& x, const kernels::Vectors& v,
+                     double dt) {
+  follow_pins(store, x, v, dt);
   most_before_ = most_from_;
   for (std::size_t i = 0; i < most_to_.size(); ++i) {
     if (std::isinf(most_from_[i]) && std::isfinite(most_to_[i]))
@@ -87,7 +115,8 @@ double Anchors::largest_excess(const AnchorStore& store, const kernels::Vectors&
 
 bool Anchors::fit(const Model& model) const {
   const std::size_t count = model.anchors.size();
-  const bool are_as_many = from_.size() == count && to_.size() == count && asked_.size() == count &&
+  const bool are_as_many = from_.size() == count && to_.size() == count &&
+                           asked_.size() == model.anchors.described.size() &&
                            most_from_.size() == count && most_to_.size() == count &&
                            has_backstop_.size() == count;
   return are_as_many && validate_anchor_limits(model, asked_);

@@ -20,6 +20,8 @@ class Anchors {
  public:
   Anchors() = default;
   explicit Anchors(const Model& model);
+  /// Behind the described ones: tethers, which are where their pins are. x: of the particles.
+  void tie(const AnchorStore& store, const kernels::Vectors& x);
 
   /// normals: or none, and they stay.
   void move(std::span<const Vec3> points, std::span<const Vec3> normals);
@@ -37,8 +39,10 @@ class Anchors {
   void limit(std::uint32_t anchor, const AnchorLimit& limit);
   void scale(double scale);
   const std::vector<AnchorLimit>& limits() const { return asked_; }
-  /// Before a step: what was let go and is held again begins where it is.
-  void depart(const AnchorStore& store, const kernels::Vectors& x);
+  /// Before a step of dt, when pins are under way: what was let go and is held again begins where
+  /// it is.
+  void depart(const AnchorStore& store, const kernels::Vectors& x, const kernels::Vectors& v,
+              double dt);
   /// After depart. arrived: the step was done; else all is as it was before.
   void stop(bool arrived);
 
@@ -64,9 +68,11 @@ class Anchors {
 
  private:
   double most(const AnchorLimit& limit) const;
+  void follow_pins(const AnchorStore& store, const kernels::Vectors& x, const kernels::Vectors& v,
+                   double dt);
 
   std::vector<reference::AnchorPose> from_, to_;
-  std::vector<AnchorLimit> asked_;
+  std::vector<AnchorLimit> asked_;                         // of the described ones
   std::vector<double> most_from_, most_before_, most_to_;  // m, scaled; before the present step
   std::vector<std::uint8_t> has_backstop_;
   double scale_ = 1;

@@ -160,6 +160,7 @@ void State::go_on_from(const State& from) {
   });
   next.pins = {};
   next.pins.go_on_from(from.pins, its_model, *model, next.position);
+  next.anchors.tie(model->anchors, next.position);
   next.rest = rest;
   if (fingerprint(*model) != fingerprint(its_model)) next.lengthening = {};
   take(std::move(next), from.settings);

@@ -67,7 +67,7 @@ class Travel {
  public:
   Travel(State& s, double dt) : s_(s) {
     s.pins.depart(dt, s.position, s.velocity);
-    s.anchors.depart(s.model->anchors, s.position);
+    s.anchors.depart(s.model->anchors, s.position, s.velocity, dt);
   }
   ~Travel() {
     s_.pins.stop(arrived_, s_.position, s_.velocity);

@@ -146,7 +146,8 @@ Result<void> validate_for_solver(const Settings& s, const Model& model) {
   if (s.solver == Solver::small_steps) return validate_scheme(s);
   for (const auto& [what, count] :
        {std::pair{"membrane", model.membrane.size()}, std::pair{"bending", model.bending.size()},
-        std::pair{"anchors", model.anchors.size()}, std::pair{"seams", model.seams.size()},
+        std::pair{"anchors", model.anchors.described.size()},
+        std::pair{"tethers", model.anchors.pins.size()}, std::pair{"seams", model.seams.size()},
         std::pair{"pressures", model.pressures.size()}}) {
     if (count > 0)
       return refuse(what, "is solved by small_steps only", std::string(name(s.solver)));

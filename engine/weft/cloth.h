@@ -146,7 +146,7 @@ struct StepReport {
   /// together than could be kept apart. They do not collide with each other until they are apart. A
   /// step that began without any and ends with some has not converged.
   int tangled = 0;
-  double max_anchor_error = 0;  ///< m, by which the limits of an anchor are exceeded
+  double max_anchor_error = 0;  ///< m, by which an anchor's limits, or a tether's, are exceeded
   int open_seams = 0;           ///< seams whose particles have not come together yet (Seam)
   double max_seam_gap = 0;  ///< m, between particles of closed seams: bounded by contact_tolerance
   double seam_work = 0;     ///< J, work of open seams in this step

@@ -184,6 +184,21 @@ struct Anchor {
   double backstop_radius = 0;    ///< m; 0: there is no backstop; infinite: it is a plane
 };
 
+/// A largest distance from a particle to a fixed one, its pin:
+///
+///     |x - pin| <= length
+///
+/// It holds as max_distance of an Anchor does, whose point is the pin, wherever that is moved
+/// (StepReport::max_anchor_error). With the length of the cloth between the two it says nothing
+/// that the cloth does not say. But it carries their load to the pin at once, where the constraints
+/// between them take many substeps (Kim, Chentanez and Mueller-Fischer, "Long Range Attachments",
+/// 2012). A tether is off while its pin is not fixed or its particle is. Solver small_steps only.
+struct Tether {
+  std::uint32_t particle = 0;  ///< in at most one tether, and in no anchor
+  std::uint32_t pin = 0;
+  double length = 0;  ///< m, 1e-150 to 1e150
+};
+
 /// Two particles that are sewn together while the cloth moves, wherever they begin. They come
 /// together along the straight line between them in the time `time`, never faster. If max_force is
 /// too small for that, they take longer. Then the seam is closed for good: it holds any force. An
@@ -275,6 +290,13 @@ struct SceneDescription {
   /// spheres are compared with all particles.)
   std::vector<std::uint32_t> spheres;
   std::vector<double> radii;
+
+  std::vector<Tether> tethers;
+  /// At least 0. Finite: each free particle that has neither an anchor nor a tether has a tether to
+  /// its nearest pin along constraints and sides of triangles of fabric. It is longer than the way
+  /// there, at rest, by this share. When pins are released or fixed (Cloth::change) the nearest
+  /// ones count. Infinite: there are none but `tethers`.
+  double tether_slack = std::numeric_limits<double>::infinity();
 };
 
 /// A scene that is checked and prepared: topology, colours, rest lengths, masses. It never
@@ -309,7 +331,8 @@ struct ModelInfo {
   std::size_t tiles = 0;  ///< groups of particles that threads may work on in parallel
   /// Share of the constraints without a hub (engine/model/model.h) that stand in contiguous runs.
   double run_share = 0;
-  std::size_t bytes = 0;  ///< held by the model
+  std::size_t bytes = 0;    ///< held by the model
+  std::size_t tethers = 0;  ///< those that act
 };
 WEFT_API ModelInfo describe(const Model& model);
 

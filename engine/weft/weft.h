@@ -17,7 +17,7 @@
 ///   jobs.h      threads of a job system
 ///
 /// It does not include mesh.h, which makes a SceneDescription of a mesh and a material, surface.h,
-/// which gives a renderer its vertices, or report_fields.h, which lists the fields of a report.
+/// which gives a renderer its vertices, or report_fields.h and scene_fields.h, which list fields.
 /// weft_c.h is all of them in C.
 ///
 /// Design:

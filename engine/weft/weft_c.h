@@ -173,6 +173,11 @@ typedef struct weft_scene { /* SceneDescription */
   const double* bending_folds; /* or NULL: 0; m, of hinges */
 
   int self_contact_untangle; /* yes or no: whether triangles that cross are drawn apart */
+
+  size_t tether_count;
+  const uint32_t* tether_particles; /* 2 each: particle, pin */
+  const double* tether_lengths;
+  double tether_slack;
 } weft_scene;
 
 typedef struct weft_model_info { /* ModelInfo */
@@ -181,6 +186,7 @@ typedef struct weft_model_info { /* ModelInfo */
       bending_elements, anchors, seams, surface_triangles, air_triangles, spheres, colours, tiles;
   double run_share;
   size_t bytes;
+  size_t tethers;
 } weft_model_info;
 
 WEFT_API weft_result weft_init_scene(weft_scene* scene, size_t size);

@@ -106,8 +106,8 @@ class Fields : public py::class_<T> {
   /// Whole arrays are read and assigned. in_messages: the field's name there.
   template <class E>
   Fields& array(const char* name, std::vector<E> T::*member, const char* text,
-                const char* in_messages = nullptr) {
-    if (in_messages == nullptr) in_messages = name;
+                std::string in_messages = "") {
+    if (in_messages.empty()) in_messages = name;
     this->def_property(
         name, [member](const T& t) { return rows<NumberOf<E>>(t.*member); },
         [member, in_messages](T& t, py::object v) { t.*member = elements<E>(v, in_messages); },

@@ -1,28 +1,10 @@
 #include "records.h"
 
-#include <cstddef>
-
 #include "parts.h"
 
 namespace weft::python {
 
 namespace {
-
-struct Field {
-  const char* name;
-  const char* format;
-  std::size_t offset;
-};
-
-py::dtype type_of(std::initializer_list<Field> fields, std::size_t size) {
-  py::list names, formats, offsets;
-  for (const Field& field : fields) {
-    names.append(field.name);
-    formats.append(py::dtype::from_args(py::str(field.format)));
-    offsets.append(field.offset);
-  }
-  return py::dtype(names, formats, offsets, static_cast<py::ssize_t>(size));
-}
 
 std::vector<std::uint32_t> checked(const py::array& array, const std::string& field) {
   using Wide = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
@@ -82,68 +64,31 @@ py::array record_array(py::handle value, const py::dtype& type, const std::strin
   return array;
 }
 
-template <>
-py::dtype record_type<Constraint>() {
-  return type_of({{"a", "u4", offsetof(Constraint, a)},
-                  {"b", "u4", offsetof(Constraint, b)},
-                  {"rest_length", "f8", offsetof(Constraint, rest_length)},
-                  {"kind", "u1", offsetof(Constraint, kind)},
-                  {"compliance", "f8", offsetof(Constraint, compliance)}},
-                 sizeof(Constraint));
+void RecordFields::add(const char* name, const std::string& format, std::ptrdiff_t offset) {
+  names_.append(name);
+  formats_.append(py::dtype::from_args(py::str(format)));
+  offsets_.append(offset);
 }
-template <>
-py::dtype record_type<BendingElement>() {
-  return type_of({{"particles", "4u4", offsetof(BendingElement, particles)},
-                  {"weights", "4f8", offsetof(BendingElement, weights)},
-                  {"rest", "f8", offsetof(BendingElement, rest)},
-                  {"compliance", "f8", offsetof(BendingElement, compliance)},
-                  {"fold", "f8", offsetof(BendingElement, fold)}},
-                 sizeof(BendingElement));
+
+py::dtype RecordFields::type(std::size_t size) const {
+  return py::dtype(names_, formats_, offsets_, static_cast<py::ssize_t>(size));
 }
-template <>
-py::dtype record_type<MembraneElement>() {
-  return type_of({{"particles", "3u4", offsetof(MembraneElement, particles)},
-                  {"rest", "(3,2)f8", offsetof(MembraneElement, rest)},
-                  {"warp", "f8", offsetof(MembraneElement, warp)},
-                  {"weft", "f8", offsetof(MembraneElement, weft)},
-                  {"shear", "f8", offsetof(MembraneElement, shear)},
-                  {"kind", "u1", offsetof(MembraneElement, kind)}},
-                 sizeof(MembraneElement));
-}
-template <>
-py::dtype record_type<Anchor>() {
-  return type_of({{"particle", "u4", offsetof(Anchor, particle)},
-                  {"point", "3f8", offsetof(Anchor, point)},
-                  {"normal", "3f8", offsetof(Anchor, normal)},
-                  {"max_distance", "f8", offsetof(Anchor, max_distance)},
-                  {"backstop_distance", "f8", offsetof(Anchor, backstop_distance)},
-                  {"backstop_radius", "f8", offsetof(Anchor, backstop_radius)}},
-                 sizeof(Anchor));
-}
-template <>
-py::dtype record_type<Seam>() {
-  return type_of({{"a", "u4", offsetof(Seam, a)},
-                  {"b", "u4", offsetof(Seam, b)},
-                  {"time", "f8", offsetof(Seam, time)},
-                  {"max_force", "f8", offsetof(Seam, max_force)}},
-                 sizeof(Seam));
-}
+
 template <>
 py::dtype record_type<BodyContact>() {
-  return type_of({{"particle", "u4", offsetof(BodyContact, particle)},
-                  {"body", "u4", offsetof(BodyContact, body)},
-                  {"point", "3f8", offsetof(BodyContact, point)},
-                  {"normal", "3f8", offsetof(BodyContact, normal)},
-                  {"push", "f8", offsetof(BodyContact, push)}},
-                 sizeof(BodyContact));
+  RecordFields fields;
+  fields.add("particle", &BodyContact::particle);
+  fields.add("body", &BodyContact::body);
+  fields.add("point", &BodyContact::point);
+  fields.add("normal", &BodyContact::normal);
+  fields.add("push", &BodyContact::push);
+  return fields.type(sizeof(BodyContact));
 }
 
 void add_records(py::module_& m) {
-  m.attr("Constraint") = record_type<Constraint>();
-  m.attr("BendingElement") = record_type<BendingElement>();
-  m.attr("MembraneElement") = record_type<MembraneElement>();
-  m.attr("Anchor") = record_type<Anchor>();
-  m.attr("Seam") = record_type<Seam>();
+  for_each_element_kind([&]<class Element>(const ElementKind<Element>& kind) {
+    m.attr(kind.type) = record_type<Element>();
+  });
   m.attr("BodyContact") = record_type<BodyContact>();
 }
 

@@ -1,6 +1,11 @@
 /// Structs of weft as NumPy records, for arrays of them.
 #pragma once
 
+#include <weft/scene_fields.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <string>
 #include <type_traits>
@@ -10,20 +15,43 @@
 
 namespace weft::python {
 
+/// The fields of a struct, by their places in it.
+class RecordFields {
+ public:
+  template <class Element, class Value>
+  void add(const char* name, Value Element::*member) {
+    static const Element kOne{};
+    const auto* begin = reinterpret_cast<const std::byte*>(&kOne);
+    const auto* at = reinterpret_cast<const std::byte*>(&(kOne.*member));
+    add(name, format_of(Value{}), at - begin);
+  }
+  py::dtype type(std::size_t size) const;
+
+ private:
+  static std::string format_of(std::uint32_t) { return "u4"; }
+  static std::string format_of(double) { return "f8"; }
+  static std::string format_of(ConstraintKind) { return "u1"; }
+  static std::string format_of(Vec3) { return "3f8"; }
+  template <class T, std::size_t n>
+  static std::string format_of(const std::array<T, n>&) {
+    return std::to_string(n) + format_of(T{});
+  }
+  template <std::size_t rows, std::size_t n>
+  static std::string format_of(const std::array<std::array<double, n>, rows>&) {
+    return "(" + std::to_string(rows) + "," + std::to_string(n) + ")f8";
+  }
+  void add(const char* name, const std::string& format, std::ptrdiff_t offset);
+
+  py::list names_, formats_, offsets_;
+};
+
 /// The record type that has the fields of T.
 template <class T>
-py::dtype record_type();
-
-template <>
-py::dtype record_type<Constraint>();
-template <>
-py::dtype record_type<BendingElement>();
-template <>
-py::dtype record_type<MembraneElement>();
-template <>
-py::dtype record_type<Anchor>();
-template <>
-py::dtype record_type<Seam>();
+py::dtype record_type() {
+  RecordFields fields;
+  for_each_element_field<T>([&](const auto& field) { fields.add(field.name, field.member); });
+  return fields.type(sizeof(T));
+}
 template <>
 py::dtype record_type<BodyContact>();
 

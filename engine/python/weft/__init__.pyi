@@ -9,10 +9,11 @@ from numpy.typing import ArrayLike, NDArray
 __version__: str
 kNoIndex: int
 Constraint: np.dtype[np.void]
-BendingElement: np.dtype[np.void]
 MembraneElement: np.dtype[np.void]
+BendingElement: np.dtype[np.void]
 Anchor: np.dtype[np.void]
 Seam: np.dtype[np.void]
+Tether: np.dtype[np.void]
 BodyContact: np.dtype[np.void]
 
 
@@ -40,11 +41,11 @@ class Air:
     density: float
     drag: float
     lift: float
-    ram: float
     @property
     def wind(self) -> NDArray[Any]: ...
     @wind.setter
     def wind(self, value: ArrayLike) -> None: ...
+    ram: float
 
 
 class Pressure:
@@ -117,15 +118,20 @@ class SceneDescription:
     def seams(self) -> NDArray[Any]: ...
     @seams.setter
     def seams(self, value: ArrayLike) -> None: ...
+    @property
+    def tethers(self) -> NDArray[Any]: ...
+    @tethers.setter
+    def tethers(self, value: ArrayLike) -> None: ...
     damping: Damping
     air: Air
-    friction: float
     pressures: list[Pressure]
     self_contact: SelfContact
+    friction: float
     @property
     def gravity(self) -> NDArray[Any]: ...
     @gravity.setter
     def gravity(self, value: ArrayLike) -> None: ...
+    tether_slack: float
 
 
 class ModelInfo:
@@ -161,6 +167,8 @@ class ModelInfo:
     def run_share(self) -> float: ...
     @property
     def bytes(self) -> int: ...
+    @property
+    def tethers(self) -> int: ...
 
 
 class Model: ...

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <queue>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -13,6 +11,7 @@
 #include "engine/erase_repeated.h"
 #include "engine/lists.h"
 #include "engine/model/model.h"
+#include "engine/model/nearest.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/tuning.h"
 
@@ -34,7 +33,7 @@ std::vector<std::uint32_t> anchors_that_hold(const Model& model, double mean_len
   double least = model.holds.empty() ? std::numeric_limits<double>::infinity() : 0;
   for (const reference::AnchorLimits& limits : anchors.limits) least = std::min(least, limits.most);
   std::vector<std::uint32_t> slots;
-  for (std::size_t i = 0; i < anchors.size(); ++i) {
+  for (std::size_t i = 0; i < anchors.described.size(); ++i) {
     if (anchors.limits[i].most <= least + mean_length && std::isfinite(anchors.limits[i].most))
       slots.push_back(anchors.slot[i]);
   }
@@ -172,12 +171,6 @@ class Levels {
   double first_mass_ = 0;
 };
 
-/// A constraint, or a side of a triangle of fabric.
-struct Join {
-  std::uint32_t a = 0, b = 0;
-  double length = 0;
-};
-
 std::vector<Join> joins_of(const Model& model, const std::vector<bool>& tethers) {
   std::vector<Join> joins;
   const auto add = [&](std::uint32_t a, std::uint32_t b, double length) {
@@ -212,12 +205,7 @@ struct Way {
 
 Way longest_way(const Model& model, std::span<const Join> joins,
                 std::span<const std::uint32_t> from) {
-  const Lists at = make_lists(model.slots(), [&](auto&& add) {
-    for (std::uint32_t i = 0; i < joins.size(); ++i) {
-      add(joins[i].a, i);
-      add(joins[i].b, i);
-    }
-  });
+  const Lists at = joins_at(model.slots(), joins);
   std::vector<Way> way(model.slots(), {-1, 0});
   std::vector<std::uint32_t> queue;
   for (const std::uint32_t slot : from) {
@@ -268,52 +256,14 @@ void leave_tethers_out(const Model& model, std::span<const std::uint32_t> anchor
   way = other;
 }
 
-/// The pin nearest to a particle, along constraints that cannot become longer.
-struct NearestPin {
-  double length = std::numeric_limits<double>::infinity();  // m
-  std::uint32_t pin = kNoIndex;
-};
-
-/// work(a, b, length), of rigid constraints and ropes without a compliance
-template <class Work>
-void for_each_rigid(const ConstraintStore& s, Work&& work) {
+/// Constraints that cannot become longer: rigid ones, and ropes without a compliance.
+std::vector<Join> rigid_joins(const ConstraintStore& s) {
+  std::vector<Join> joins;
   for (std::uint32_t c = 0; c < s.size(); ++c) {
-    if (s.compliance[c] == 0) work(s.a[c], s.b[c], s.rest_length[c]);
+    if (!s.has_springs() || s.compliance[c] == 0)
+      joins.push_back({s.a[c], s.b[c], s.rest_length[c]});
   }
-}
-
-std::vector<NearestPin> find_nearest_pins(const Model& model) {
-  struct Step {
-    std::uint32_t to = 0;
-    double length = 0;
-  };
-  std::vector<Step> steps;
-  for_each_rigid(model.constraints, [&](std::uint32_t a, std::uint32_t b, double length) {
-    steps.push_back({b, length});
-    steps.push_back({a, length});
-  });
-  const Lists at = make_lists(model.slots(), [&](auto&& add) {
-    for (std::uint32_t i = 0; i < steps.size(); ++i) add(steps[i ^ 1].to, i);
-  });
-  std::vector<NearestPin> nearest(model.slots());
-  using Entry = std::pair<double, std::uint32_t>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  for (const std::uint32_t pin : model.holds) {
-    nearest[pin] = {0, pin};
-    queue.push({0, pin});
-  }
-  while (!queue.empty()) {
-    const auto [length, slot] = queue.top();
-    queue.pop();
-    if (length > nearest[slot].length) continue;
-    for (const std::uint32_t i : at[slot]) {
-      const double there = length + steps[i].length;
-      if (there >= nearest[steps[i].to].length) continue;
-      nearest[steps[i].to] = {there, nearest[slot].pin};
-      queue.push({there, steps[i].to});
-    }
-  }
-  return nearest;
+  return joins;
 }
 
 /// Between pins whose nearest particles meet: what is out of reach of a pin is out of reach of one
@@ -321,13 +271,14 @@ std::vector<NearestPin> find_nearest_pins(const Model& model) {
 std::vector<SmallStepsLoad::Span> find_ways(const Model& model) {
   std::vector<SmallStepsLoad::Span> ways;
   if (model.holds.size() < 2) return ways;
-  const std::vector<NearestPin> nearest = find_nearest_pins(model);
-  for_each_rigid(model.constraints, [&](std::uint32_t a, std::uint32_t b, double length) {
-    const std::uint32_t first = nearest[a].pin, last = nearest[b].pin;
-    if (first == last || first == kNoIndex || last == kNoIndex) return;
+  const std::vector<Join> joins = rigid_joins(model.constraints);
+  const std::vector<Nearest> nearest = find_nearest(model.slots(), model.holds, joins);
+  for (const auto& [a, b, length] : joins) {
+    const std::uint32_t first = nearest[a].end, last = nearest[b].end;
+    if (first == last || first == kNoIndex || last == kNoIndex) continue;
     ways.push_back({std::min(first, last), std::max(first, last),
                     nearest[a].length + length + nearest[b].length});
-  });
+  }
   const auto key = [](const SmallStepsLoad::Span& way) {
     return std::tuple(way.first_slot, way.last_slot, way.length);
   };

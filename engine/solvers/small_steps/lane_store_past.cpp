@@ -48,7 +48,10 @@ void LaneStore::go_on_from(const LaneStore& other, kernels::VectorsView v,
   const SmallStepsPast& its = other.past_;
   const auto& its_base = other.is_new_ ? its.base : other.base_;
   past_.h = its.h;
-  past_.at_limit = its.at_limit;
+  if (model_.anchors.slot == other.model_.anchors.slot)
+    past_.at_limit = its.at_limit;
+  else
+    past_.at_limit.assign(anchors_.at_limit().size(), 0);
   past_.since_renewal = layout_.cell == other.layout_.cell ? its.since_renewal : tuning::kRenewal;
   past_.misplaced.clear();
   past_.misplaced.tangled = its.misplaced.tangled;  // triangles keep their numbers

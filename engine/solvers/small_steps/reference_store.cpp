@@ -450,7 +450,10 @@ void ReferenceStore::jolt(std::uint32_t i, Vector by) {
 void ReferenceStore::go_on_from(const ReferenceStore& other, kernels::VectorsView v,
                                 kernels::Vector gravity) {
   past_.h = other.past_.h;
-  past_.at_limit = other.past_.at_limit;
+  if (model_.anchors.slot == other.model_.anchors.slot)
+    past_.at_limit = other.past_.at_limit;
+  else
+    past_.at_limit.assign(at_limit_.size(), false);
   past_.misplaced.clear();
   past_.misplaced.tangled = other.past_.misplaced.tangled;  // triangles keep their numbers
   past_.contacts = other.past_.contacts;                    // and so do edges

@@ -24,6 +24,8 @@ TEST_CASE("what constraints and triangles join is a piece; fixed particles and a
   CHECK(pieces.held == std::vector<bool>{true, false, true, false});
   CHECK(pieces.count == 4);
   CHECK(pieces.loose() == 2);
+  scene.tethers = {{.particle = 9, .pin = 2, .length = 1}};
+  CHECK(pieces_of(scene).loose() == 1);
 }
 
 /// Two strips of three edges, one above the other.

@@ -464,11 +464,11 @@ TEST_CASE("the format is the one of its version") {
                 static_cast<unsigned long long>(checksum(model)));
   }
   CHECK(state[8] == std::byte{7});
-  CHECK(model[8] == std::byte{5});
+  CHECK(model[8] == std::byte{9});
   CHECK(state.size() == 11171);
-  CHECK(checksum(state) == 0x98b019d8ceaa7b2b);
-  CHECK(model.size() == 732);
-  CHECK(checksum(model) == 0x8c769682beae5121);
+  CHECK(checksum(state) == 0xb8d9c920242a27e5);
+  CHECK(model.size() == 748);
+  CHECK(checksum(model) == 0x87a59a3e3142eb52);
 }
 
 }  // namespace

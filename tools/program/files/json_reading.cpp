@@ -84,6 +84,18 @@ std::string plain_message(const Json::exception& exception, std::string_view tex
   return is_out_of_range ? fmt::format("{}: {}", line_of_error(text), plain) : plain;
 }
 
+void check_keys(const Json& json, const std::string& place, const Keys& known, const Keys& needed) {
+  if (!json.is_object()) refuse(place, "an object", json);
+  for (const auto& [key, value] : json.items()) {
+    if (std::ranges::find(known, std::string_view(key)) != known.end()) continue;
+    throw Refused{fmt::format("{}: unknown key {}", place, in_quotes(key))};
+  }
+  for (const std::string_view key : needed) {
+    if (json.contains(key)) continue;
+    throw Refused{fmt::format("{}: the key '{}' is missing", place, key)};
+  }
+}
+
 double read_number(const Json& json, const std::string& place) {
   if (!json.is_number()) refuse(place, "a number", json);
   return json.get<double>();

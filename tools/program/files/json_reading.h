@@ -36,6 +36,10 @@ inline std::string within(const std::string& place, std::string_view key) {
 /// line of `text` where it is not in there.
 std::string plain_message(const Json::exception& exception, std::string_view text);
 
+using Keys = std::vector<std::string_view>;
+/// An object that has no keys but known ones, and the needed ones.
+void check_keys(const Json& json, const std::string& place, const Keys& known, const Keys& needed);
+
 double read_number(const Json& json, const std::string& place);
 std::uint32_t read_index(const Json& json, const std::string& place);  // of a particle
 Vec3 read_vector(const Json& json, const std::string& place);

@@ -13,37 +13,14 @@
 #include "tools/program/files/json_reading.h"
 #include "tools/program/files/text_file.h"
 #include "tools/program/formats/scene_bodies.h"
-#include "tools/program/formats/scene_material.h"
 #include "tools/program/formats/scene_moves.h"
+#include "tools/program/formats/scene_parts.h"
 #include "tools/scenes/mesh.h"
 
 namespace weft::tools {
 namespace {
 
 // --------------------------------------------------------------------------------------- reading
-
-/// A rest length that the file leaves out becomes 0 here: legal lengths are above 0.
-constexpr double kMeasured = 0;
-
-double read_rest_length(const Json& json, const std::string& place) {
-  if (json.is_null()) return kMeasured;
-  const double length = read_number(json, place);
-  if (!(length > 0)) refuse(place, "a length above 0", json);
-  return length;
-}
-
-Constraint read_constraint(const Json& json, const std::string& place) {
-  if (!json.is_array() || json.size() < 2 || json.size() > 5) {
-    refuse(place, "[a, b, rest length, kind, compliance]", json);
-  }
-  Constraint constraint;
-  constraint.a = read_index(json[0], place + "[0]");
-  constraint.b = read_index(json[1], place + "[1]");
-  constraint.rest_length = json.size() > 2 ? read_rest_length(json[2], place + "[2]") : kMeasured;
-  if (json.size() > 3) constraint.kind = read_kind(json[3], place + "[3]");
-  if (json.size() > 4) constraint.compliance = read_number(json[4], place + "[4]");
-  return constraint;
-}
 
 void measure_rest_lengths(SceneDescription& scene) {
   for (std::size_t i = 0; i < scene.constraints.size(); ++i) {
@@ -82,16 +59,8 @@ Faces read_faces(const Json& json, std::size_t particles) {
   return faces;
 }
 
-std::array<std::uint32_t, 3> read_surface_triangle(const Json& json, const std::string& place) {
-  if (!json.is_array() || json.size() != 3) refuse(place, "three particles", json);
-  const auto corners = read_array(json, place, read_index);
-  return {corners[0], corners[1], corners[2]};
-}
-
 void read_key(const std::string& key, const Json& json, SceneDescription& scene) {
-  if (key == "gravity") {
-    scene.gravity = read_vector(json, key);
-  } else if (key == "positions") {
+  if (key == "positions") {
     scene.positions = read_array(json, key, read_vector);
   } else if (key == "velocities") {
     scene.velocities = read_array(json, key, read_vector);
@@ -99,33 +68,14 @@ void read_key(const std::string& key, const Json& json, SceneDescription& scene)
     scene.masses = read_array(json, key, read_number);
   } else if (key == "fixed") {
     scene.fixed = read_array(json, key, read_index);
-  } else if (key == "constraints") {
-    scene.constraints = read_array(json, key, read_constraint);
-  } else if (key == "membrane") {
-    scene.membrane = read_array(json, key, read_membrane);
-  } else if (key == "bending") {
-    scene.bending = read_array(json, key, read_bending);
   } else if (key == "surface") {
-    scene.surface = read_array(json, key, read_surface_triangle);
-  } else if (key == "anchors") {
-    scene.anchors = read_array(json, key, read_anchor);
-  } else if (key == "seams") {
-    scene.seams = read_array(json, key, read_seam);
-  } else if (key == "damping") {
-    scene.damping = read_damping(json, key);
-  } else if (key == "air") {
-    scene.air = read_air(json, key);
-  } else if (key == "pressures") {
-    scene.pressures = read_array(json, key, read_pressure);
+    scene.surface = read_array(json, key, read_triangle);
   } else if (key == "spheres") {
     scene.spheres = read_array(json, key, read_index);
   } else if (key == "radii") {
     scene.radii = read_array(json, key, read_number);
-  } else if (key == "friction") {
-    scene.friction = read_number(json, key);
-  } else if (key == "self_contact") {
-    scene.self_contact = read_self_contact(json, key);
-  } else if (key != "total_mass" && key != "moves" && key != "faces" && key != "bodies") {
+  } else if (key != "total_mass" && key != "moves" && key != "faces" && key != "bodies" &&
+             !read_part(key, json, scene)) {
     throw Refused{fmt::format("unknown key {}", in_quotes(key))};
   }
 }
@@ -171,25 +121,6 @@ Json parse_once_each(std::string_view text) {
 
 std::string vector_row(const Vec3& v) { return Json{v.x, v.y, v.z}.dump(); }
 
-std::string constraint_row(const Constraint& constraint) {
-  Json row{constraint.a, constraint.b, constraint.rest_length};
-  const bool is_rope = constraint.kind == ConstraintKind::rope;
-  if (is_rope || constraint.compliance > 0) row.push_back(is_rope ? "rope" : "distance");
-  if (constraint.compliance > 0) row.push_back(constraint.compliance);
-  return row.dump();
-}
-
-template <class Value, class Row>
-void add_rows(std::string& text, std::string_view key, const std::vector<Value>& values, Row row) {
-  if (values.empty()) return;
-  text += fmt::format(",\n\"{}\": [", key);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    text += i == 0 ? "\n" : ",\n";
-    text += row(values[i]);
-  }
-  text += "\n]";
-}
-
 template <class Number>
 void add_numbers(std::string& text, std::string_view key, const std::vector<Number>& values) {
   if (!values.empty()) text += fmt::format(",\n\"{}\": {}", key, Json(values).dump());
@@ -217,33 +148,20 @@ Result<SceneFile> read_scene_file(const std::string& path) {
 
 std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>& moves,
                        const Faces& faces, const std::vector<SceneBody>& bodies) {
-  std::string text = fmt::format("{{\n\"gravity\": {}", vector_row(scene.gravity));
+  std::string text;
   add_rows(text, "positions", scene.positions, vector_row);
   add_rows(text, "velocities", scene.velocities, vector_row);
   add_numbers(text, "masses", scene.masses);
   add_numbers(text, "fixed", scene.fixed);
-  add_rows(text, "constraints", scene.constraints, constraint_row);
-  add_rows(text, "membrane", scene.membrane, membrane_row);
-  add_rows(text, "bending", scene.bending, bending_row);
+  text += parts_text(scene);
   add_rows(text, "surface", scene.surface, [](const auto& t) { return Json(t).dump(); });
   if (scene.surface.empty() && !faces.empty()) text += ",\n\"surface\": []";
-  add_rows(text, "anchors", scene.anchors, anchor_row);
-  add_rows(text, "seams", scene.seams, seam_row);
-  if (has_damping(scene.damping)) {
-    text += fmt::format(",\n\"damping\": {}", damping_text(scene.damping));
-  }
-  if (has_air(scene.air)) text += fmt::format(",\n\"air\": {}", air_text(scene.air));
-  add_rows(text, "pressures", scene.pressures, pressure_row);
   add_numbers(text, "spheres", scene.spheres);
   add_numbers(text, "radii", scene.radii);
-  if (scene.friction != SceneDescription{}.friction)
-    text += fmt::format(",\n\"friction\": {}", Json(scene.friction).dump());
-  if (scene.self_contact != SelfContact{})
-    text += fmt::format(",\n\"self_contact\": {}", self_contact_text(scene.self_contact));
   add_rows(text, "bodies", bodies, body_row);
   add_rows(text, "moves", moves, move_row);
   add_rows(text, "faces", faces, [](const auto& face) { return Json(face).dump(); });
-  return text + "\n}\n";
+  return "{" + text.substr(1) + "\n}\n";  // without the first comma
 }
 
 SceneDescription present_scene(const SceneDescription& scene, const Cloth& cloth) {

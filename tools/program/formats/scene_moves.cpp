@@ -37,20 +37,6 @@ void read_key(const std::string& key, const Json& json, const std::string& place
   }
 }
 
-void check_keys(const Json& json, const std::string& place) {
-  if (!json.is_object()) refuse(place, "an object", json);
-  static constexpr std::string_view kKeys[] = {"particles", "times", "translations",
-                                               "rotations", "about", "from"};
-  for (const auto& [key, value] : json.items()) {
-    if (std::ranges::find(kKeys, key) != std::end(kKeys)) continue;
-    throw Refused{fmt::format("{}: unknown key {}", place, in_quotes(key))};
-  }
-  for (const std::string_view key : {"particles", "times", "translations"}) {
-    if (json.contains(key)) continue;
-    throw Refused{fmt::format("{}: the key '{}' is missing", place, key)};
-  }
-}
-
 void check_count(const Json& json, const std::string& place, std::string_view key,
                  std::string_view of) {
   if (!json.contains(key) || json[key].size() == json[of].size()) return;
@@ -59,7 +45,8 @@ void check_count(const Json& json, const std::string& place, std::string_view ke
 }
 
 PinMove read_pin_move(const Json& json, const std::string& place) {
-  check_keys(json, place);
+  check_keys(json, place, {"particles", "times", "translations", "rotations", "about", "from"},
+             {"particles", "times", "translations"});
   PinMove move;
   for (const auto& [key, value] : json.items()) read_key(key, value, within(place, key), move);
   check_count(json, place, "translations", "times");

@@ -249,6 +249,7 @@ Json to_json(const RunReport& report) {
       {"bending_elements", summary.model.bending_elements},
       {"anchors", summary.model.anchors},
       {"seams", summary.model.seams},
+      {"tethers", summary.model.tethers},
       {"air_triangles", summary.model.air_triangles},
       {"spheres", summary.model.spheres},
       {"solver", name(settings.solver)},
@@ -372,6 +373,10 @@ std::string to_table(const RunReport& report) {
   if (const auto crossed = crossings_text(summary); !crossed.empty()) row("crossings", crossed);
   if (summary.model.anchors > 0) {
     row("anchors", fmt::format("{}, {:.3g} m beyond their limits at most", summary.model.anchors,
+                               total.max_anchor_error));
+  }
+  if (summary.model.tethers > 0) {
+    row("tethers", fmt::format("{}, {:.3g} m beyond their lengths at most", summary.model.tethers,
                                total.max_anchor_error));
   }
   if (summary.model.seams > 0) {

@@ -313,7 +313,7 @@ TEST_CASE("the surface is that of the faces unless it is given") {
   const auto faces = parse_scene(start + R"(, "faces": [[0,1,2,3]], "surface": []})").value();
   CHECK(parse_scene(scene_text(faces.description, {}, faces.faces)).value().description.surface ==
         Surface{});
-  CHECK(error_with(R"("surface": [[0,1]])") == "surface[0]: expected three particles, not [0,1]");
+  CHECK(error_with(R"("surface": [[0,1]])") == "surface[0]: expected [a, b, c], not [0,1]");
 }
 
 TEST_CASE("errors of bodies name their place") {
