@@ -1,6 +1,8 @@
 #include "tests/support/motion.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "tests/support/vectors.h"
 
@@ -77,6 +79,16 @@ double energy(const SceneDescription& scene, const std::vector<Vec3>& positions,
            (dot(velocities[i], velocities[i]) / 2 - dot(scene.gravity, positions[i]));
   }
   return sum;
+}
+
+double pendulum_period(double angle) {
+  double a = 1, g = std::cos(angle / 2);
+  for (int i = 0; i < 10; ++i) {
+    const double mean = (a + g) / 2;
+    g = std::sqrt(a * g);
+    a = mean;
+  }
+  return 2 * std::numbers::pi * std::sqrt(0.1) / a;
 }
 
 }  // namespace weft::test

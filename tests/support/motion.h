@@ -23,4 +23,8 @@ double max_penetration(const SceneDescription& scene, const std::vector<Vec3>& p
 double energy(const SceneDescription& scene, const std::vector<Vec3>& positions,
               const std::vector<Vec3>& velocities);
 
+/// s, of a pendulum of 1 m that is let go at `angle` rad, at 10 m/s^2: by the arithmetic-geometric
+/// mean (Gauss).
+double pendulum_period(double angle);
+
 }  // namespace weft::test

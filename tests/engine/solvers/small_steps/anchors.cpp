@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -65,20 +64,9 @@ std::vector<Vec3> points_of(const SceneDescription& scene) {
   return points;
 }
 
-/// s, of a pendulum of 1 m that is let go at `angle` rad.
-double period(double angle) {
-  double a = 1, g = std::cos(angle / 2);
-  for (int i = 0; i < 10; ++i) {
-    const double mean = (a + g) / 2;
-    g = std::sqrt(a * g);
-    a = mean;
-  }
-  return 2 * std::numbers::pi * std::sqrt(0.1) / a;
-}
-
 /// m, from where a pendulum is after half a period.
 double pendulum_error(Backend backend, int substeps) {
-  const double angle = 1.2, end = period(angle) / 2;
+  const double angle = 1.2, end = pendulum_period(angle) / 2;
   const Vec3 start{std::sin(angle), -std::cos(angle), 0};
   Cloth cloth =
       cloth_of(one_particle(start, {}, {.max_distance = 1}), small_steps(backend, substeps));

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "engine/c_interface/scene_arrays.h"
 #include "tests/support/clothes.h"
+#include "tests/support/motion.h"
 #include "tests/support/vectors.h"
 
 namespace weft::test::engine_solvers_small_steps_tethers {
@@ -28,17 +28,6 @@ SceneDescription pendulum(Vec3 start, double mass = 1) {
   scene.fixed = {0};
   scene.tethers = {{.particle = 1, .pin = 0, .length = 1}};
   return scene;
-}
-
-/// s, of a pendulum of 1 m that is let go at `angle` rad.
-double period(double angle) {
-  double a = 1, g = std::cos(angle / 2);
-  for (int i = 0; i < 10; ++i) {
-    const double mean = (a + g) / 2;
-    g = std::sqrt(a * g);
-    a = mean;
-  }
-  return 2 * std::numbers::pi * std::sqrt(0.1) / a;
 }
 
 /// A hanging sheet that is let go level, of a fabric with this stiffness, N/m.
@@ -64,7 +53,7 @@ double largest_excess(const Cloth& cloth, std::uint32_t size) {
 }
 
 TEST_CASE("what hangs on a tether swings as a pendulum, at any frame rate") {
-  const double angle = 1.2, end = period(angle) / 2;
+  const double angle = 1.2, end = pendulum_period(angle) / 2;
   const Vec3 start{std::sin(angle), -std::cos(angle), 0};
   for (const Backend backend : kBackends) {
     for (const double rate : kRates) {
