@@ -78,7 +78,6 @@ void keep_length(State& s, double dt) {
 /// s, of the shortest substeps of a frame. Strains that longer ones left would come back as speed.
 /// So automatic substeps become shorter over some frames.
 double shortest_length(const State& s, double dt) {
-  if (s.placed) return 0;
   return length_of_last(s) * std::exp(-dt / (2 * tuning::kStiffening));
 }
 
@@ -156,7 +155,7 @@ FramePlan plan_of_step(State& s, const Attempt& attempt, double dt, const Budget
     plan.passes = std::min<double>(budget.positions, passes_beyond(plan.substeps, wanted));
     keep_stiffness(s, dt, plan);
   } else {
-    const double length = takes_over ? usual : std::max(usual, shortest_length(s, dt));
+    const double length = plan.placed ? usual : std::max(usual, shortest_length(s, dt));
     plan.postponed = std::log2(length / usual);
     plan.substeps =
         static_cast<int>(std::clamp<double>(std::ceil(dt / length), 1, most_substeps(budget)));
