@@ -56,10 +56,18 @@ inline double trace(const Tensor& t) { return t.xx + t.yy + t.zz; }
 inline double sum_of_squares(const Tensor& t) {
   return t.xx * t.xx + t.yy * t.yy + t.zz * t.zz + 2 * (t.yz * t.yz + t.zx * t.zx + t.xy * t.xy);
 }
-/// u^T t v
-inline double form(const Tensor& t, Vec3 u, Vec3 v) {
-  return t.xx * u.x * v.x + t.yy * u.y * v.y + t.zz * u.z * v.z + t.yz * (u.y * v.z + u.z * v.y) +
-         t.zx * (u.z * v.x + u.x * v.z) + t.xy * (u.x * v.y + u.y * v.x);
+/// The sum over the six, each times its own of the other.
+inline double contract(const Tensor& a, const Tensor& b) {
+  return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + a.yz * b.yz + a.zx * b.zx + a.xy * b.xy;
+}
+/// contract() of it and t is u^T t v.
+inline Tensor weights_of_form(Vec3 u, Vec3 v) {
+  return {u.x * v.x,
+          u.y * v.y,
+          u.z * v.z,
+          u.y * v.z + u.z * v.y,
+          u.z * v.x + u.x * v.z,
+          u.x * v.y + u.y * v.x};
 }
 
 }  // namespace weft::mesh

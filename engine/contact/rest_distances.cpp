@@ -20,6 +20,54 @@ namespace {
 using kernels::Vector;
 using Corners = std::array<Vector, 3>;
 
+/// Over the way from 0 to l along x, so far from both ends.
+Vector corner(double l, double from_start, double from_end, double side) {
+  if (!(l > 0)) return {from_start, 0, 0};
+  const double x = (from_start * from_start - from_end * from_end + l * l) / (2 * l);
+  return {x, side * std::sqrt(std::max(0.0, from_start * from_start - x * x)), 0};
+}
+
+/// m, per point: the least height of its faces, or 0 where they do not go all around it, or seams
+/// join others to it. Nothing but what is at a corner of a face comes nearer to it than the least
+/// of its three corners has: a way from it leaves all faces at its corners across the height of
+/// one.
+std::vector<double> clear_around_points(const TriangleSurface& s,
+                                        const std::vector<double>& lengths,
+                                        const SewnPoints& sewn) {
+  const std::size_t points = s.triangles_at.size();
+  std::vector<double> clear(points, std::numeric_limits<double>::infinity());
+  for (std::uint32_t point = 0; point < points; ++point) {
+    const std::size_t triangles = s.triangles_at[point].size();
+    if (s.neighbours[point].size() != triangles || sewn.triangles_at(s, point).size() != triangles)
+      clear[point] = 0;
+  }
+  for (std::uint32_t t = 0; t < s.triangles.size(); ++t) {
+    if (!s.is_face(t)) continue;
+    const auto [ab, bc, ca] = s.edges_of[t];
+    const double longest = std::max({lengths[ab], lengths[bc], lengths[ca]});
+    const double twice_area = lengths[ab] * corner(lengths[ab], lengths[ca], lengths[bc], 1).y;
+    const double height = longest > 0 ? twice_area / longest : 0;
+    for (const std::uint32_t point : s.triangles[t]) clear[point] = std::min(clear[point], height);
+  }
+  return clear;
+}
+
+bool are_far(double within, const Vector* a, std::size_t as, const Vector* b, std::size_t bs) {
+  const auto beyond = [&](double Vector::*axis) {
+    double low_a = a[0].*axis, high_a = low_a, low_b = b[0].*axis, high_b = low_b;
+    for (std::size_t i = 1; i < as; ++i) {
+      low_a = std::min(low_a, a[i].*axis);
+      high_a = std::max(high_a, a[i].*axis);
+    }
+    for (std::size_t i = 1; i < bs; ++i) {
+      low_b = std::min(low_b, b[i].*axis);
+      high_b = std::max(high_b, b[i].*axis);
+    }
+    return low_a - high_b > within || low_b - high_a > within;
+  };
+  return beyond(&Vector::x) || beyond(&Vector::y);
+}
+
 /// Around one triangle, all in its plane.
 class FlatPatch {
  public:
@@ -54,12 +102,6 @@ class FlatPatch {
   }
 
  private:
-  /// Over the way from 0 to l along x, so far from both ends.
-  static Vector corner(double l, double from_start, double from_end, double side) {
-    if (!(l > 0)) return {from_start, 0, 0};
-    const double x = (from_start * from_start - from_end * from_end + l * l) / (2 * l);
-    return {x, side * std::sqrt(std::max(0.0, from_start * from_start - x * x)), 0};
-  }
   void lay_beside(std::size_t at, std::size_t k, std::uint32_t source, double within) {
     const std::uint32_t from = laid_[at].triangle;
     const TriangleSurface::Triangle& corners = surface_.triangles[from];
@@ -129,6 +171,8 @@ class FlatPatch {
   bool is_within(const Corners& corners, double within) const {
     double least = std::numeric_limits<double>::infinity();
     const Corners& source = laid_.front().corners;
+    if (have_common(corners, source)) return true;
+    if (are_far(within, corners.data(), 3, source.data(), 3)) return false;
     for (std::size_t i = 0; i < 3; ++i) {
       const auto distance = [](const reference::Nearest& nearest) { return length(nearest.r); };
       least = std::min(
@@ -138,6 +182,13 @@ class FlatPatch {
                reference::nearest_in_triangle(source[i], corners[0], corners[1], corners[2]))});
     }
     return least < within;
+  }
+
+  /// Most triangles that are near have a corner of the source, and there is no more to find out.
+  static bool have_common(const Corners& one, const Corners& other) {
+    return std::ranges::any_of(one, [&](Vector a) {
+      return std::ranges::any_of(other, [&](Vector b) { return a.x == b.x && a.y == b.y; });
+    });
   }
 
   const TriangleSurface& surface_;
@@ -259,22 +310,6 @@ class PairsAlongThreads {
   std::vector<std::uint32_t> threads_;  // at the point
 };
 
-bool are_far(double within, const Vector* a, std::size_t as, const Vector* b, std::size_t bs) {
-  const auto beyond = [&](double Vector::*axis) {
-    double low_a = a[0].*axis, high_a = low_a, low_b = b[0].*axis, high_b = low_b;
-    for (std::size_t i = 1; i < as; ++i) {
-      low_a = std::min(low_a, a[i].*axis);
-      high_a = std::max(high_a, a[i].*axis);
-    }
-    for (std::size_t i = 1; i < bs; ++i) {
-      low_b = std::min(low_b, b[i].*axis);
-      high_b = std::max(high_b, b[i].*axis);
-    }
-    return low_a - high_b > within || low_b - high_a > within;
-  };
-  return beyond(&Vector::x) || beyond(&Vector::y);
-}
-
 }  // namespace
 
 std::uint64_t RestDistances::key_of(PairKind kind, std::uint32_t first, std::uint32_t second) {
@@ -287,6 +322,7 @@ RestDistances::RestDistances(const Model& model, double thickness, const SewnPoi
     : thickness_(thickness) {
   const TriangleSurface& s = model.touched_surface();
   const std::vector<double> lengths = lengths_at_rest(model, s);
+  const std::vector<double> clear = clear_around_points(s, lengths, sewn);
   FlatPatch patch(s, lengths, sewn);
   const auto take = [&](PairKind kind, std::uint32_t first, std::uint32_t second, double distance) {
     if (distance < thickness)
@@ -299,6 +335,8 @@ RestDistances::RestDistances(const Model& model, double thickness, const SewnPoi
   for (std::uint32_t t = 0; t < s.triangles.size(); ++t) {
     if (!s.is_face(t)) continue;
     const TriangleSurface::Triangle& corners = s.triangles[t];
+    if (std::ranges::all_of(corners, [&](std::uint32_t p) { return clear[p] > thickness; }))
+      continue;
     const auto& laid = patch.lay_around(t, thickness);
     const Corners here = laid.front().corners;
     for (const auto& [other, there] : laid) {

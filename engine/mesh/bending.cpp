@@ -37,7 +37,9 @@ struct Crossing {
 class Builder {
  public:
   Builder(const std::vector<Face>& faces, const Edges& edges, double weld_distance)
-      : faces_(faces), edges_(edges), weld_distance_(weld_distance), extent_(extent(faces)) {}
+      : faces_(faces), edges_(edges), weld_distance_(weld_distance), extent_(extent(faces)) {
+    for (const Face& face : faces) areas_.push_back(area(face));
+  }
 
   Stencils build() {
     for (const Edge& edge : edges_.all()) {
@@ -57,11 +59,11 @@ class Builder {
     const Face& f = face(of);
     if (f.is_quad()) {
       const bool has_opposite = edges_.at(of.face, (of.side + 2) % 4).is_inner();
-      return area(f) / (has_opposite ? 2 : 1);
+      return areas_[of.face] / (has_opposite ? 2 : 1);
     }
     int inner = 0;
     for (std::size_t side = 0; side < 3; ++side) inner += edges_.at(of.face, side).is_inner();
-    return area(f) / inner;
+    return areas_[of.face] / inner;
   }
 
   void add_edge(const Edge& edge) {
@@ -171,14 +173,15 @@ class Builder {
     Stencil stencil = hinge(a, b, far_one, far_two, a.place, b.place, false);
     stencil.fold = fold_of(stencil, {a.place, b.place, far_one.place, far_two.place}, extent_);
     built_.contributions.push_back({static_cast<std::uint32_t>(built_.stencils.size()), number,
-                                    weight_in_grid(stencil, area(quad))});
+                                    weight_in_grid(stencil, areas_[number])});
     built_.stencils.push_back(stencil);
   }
 
   const std::vector<Face>& faces_;
   const Edges& edges_;
   const double weld_distance_;
-  const double extent_;  ///< m, of the mesh
+  const double extent_;        ///< m, of the mesh
+  std::vector<double> areas_;  ///< m^2, of faces
   Stencils built_;
   std::vector<std::vector<Crossing>> crossings_;  ///< at particles
 };

@@ -42,17 +42,68 @@ Turn turn_between(const Axes& from, const Axes& to) {
   return {(c * c - s * s) / size, 2 * s * c / size, mirrored};
 }
 
+/// Half of the trace of a symmetric matrix in the axes of a particle, half of the difference on its
+/// diagonal, and its element beside that: each as the weights of a sum over six numbers.
+struct Readings {
+  Tensor mean, difference, beside;
+};
+
+Readings readings_in(const Axes& axes) {
+  const Tensor x = weights_of_form(axes.x, axes.x), y = weights_of_form(axes.y, axes.y);
+  return {plus(plus({}, 0.5, x), 0.5, y), plus(plus({}, 0.5, x), -0.5, y),
+          weights_of_form(axes.x, axes.y)};
+}
+
+/// A part of the area around a particle, of which an element stores the energy.
+struct Part {
+  std::uint32_t stencil = 0, particle = 0;
+  double weight = 0;
+};
+
+/// Stencil by stencil.
+std::vector<Part> parts_of(const Stencils& stencils, const std::vector<Face>& faces) {
+  const auto& contributions = stencils.contributions;
+  std::vector<std::uint32_t> first(stencils.stencils.size() + 1, 0), order(contributions.size());
+  for (const Contribution& one : contributions) ++first[one.stencil + 1];
+  for (std::size_t s = 0; s + 1 < first.size(); ++s) first[s + 1] += first[s];
+  for (std::uint32_t i = 0; i < contributions.size(); ++i)
+    order[first[contributions[i].stencil]++] = i;
+  std::vector<Part> parts;
+  std::size_t begin = 0;  // of the present stencil
+  for (const std::uint32_t i : order) {
+    const auto& [stencil, number, weight] = contributions[i];
+    if (begin < parts.size() && parts[begin].stencil != stencil) begin = parts.size();
+    const Face& face = faces[number];
+    for (std::size_t corner = 0; corner < face.size; ++corner) {
+      const std::uint32_t particle = face.particles[corner];
+      const auto found =
+          std::find_if(parts.begin() + static_cast<std::ptrdiff_t>(begin), parts.end(),
+                       [&](const Part& p) { return p.particle == particle; });
+      if (found != parts.end())
+        found->weight += weight;
+      else
+        parts.push_back({stencil, particle, weight});
+    }
+  }
+  return parts;
+}
+
 /// The energies stored around a particle, in its axes.
 struct Patch {
   MomentMatrix stored{};  ///< row: moments of energy; column: as much of each coefficient
   double area = 0;
 
-  void add(double factor, const Patch& other, const Turn& turn) {
-    const MomentMatrix turned = turn(other.stored);
+  void add(double factor, const Moments& energy, const Moments& own) {
     for (std::size_t i = 0; i < kMoments; ++i) {
-      for (std::size_t j = 0; j < kMoments; ++j) stored[i][j] += factor * turned[i][j];
+      const double row = factor * energy[i];
+      for (std::size_t j = 0; j < kMoments; ++j) stored[i][j] += row * own[j];
     }
-    area += factor * other.area;
+  }
+  void add(double factor, const MomentMatrix& matrix, double size) {
+    for (std::size_t i = 0; i < kMoments; ++i) {
+      for (std::size_t j = 0; j < kMoments; ++j) stored[i][j] += factor * matrix[i][j];
+    }
+    area += factor * size;
   }
   /// The first coefficient is that of the first moment, which is 1 of itself. So its column is what
   /// is stored where all factors are 1.
@@ -103,14 +154,23 @@ class Calibrator {
       : faces_(faces),
         stencils_(stencils),
         corners_(faces, particles),
+        parts_(parts_of(stencils, faces)),
         axes_(particles),
+        forms_(particles),
         is_sewn_(particles_of_seams(faces, edges, weld_distance, particles)),
         is_free_(free_particles(faces, edges, is_sewn_)),
+        areas_(particles, 0),
         factors_(stencils.stencils.size(), 1),
         patches_(particles) {
     for (const Stencil& stencil : stencils.stencils) readings_.push_back(stencil.reading);
     for (std::uint32_t p = 0; p < particles; ++p) {
-      if (!corners_.at(p).empty()) axes_[p] = axes_of(faces, corners_.at(p));
+      if (corners_.at(p).empty()) continue;
+      axes_[p] = axes_of(faces, corners_.at(p));
+      forms_[p] = readings_in(axes_[p]);
+    }
+    for (const Face& face : faces) {
+      const double size = area(face);
+      for (std::size_t i = 0; i < face.size; ++i) areas_[face.particles[i]] += size;
     }
     find_neighbours(edges);
   }
@@ -164,9 +224,9 @@ class Calibrator {
   }
 
   Moments moments(const Tensor& reading, std::uint32_t particle) const {
-    const Axes& axes = axes_[particle];
-    return moments_of_square(form(reading, axes.x, axes.x), form(reading, axes.y, axes.y),
-                             form(reading, axes.x, axes.y));
+    const Readings& of = forms_[particle];
+    return moments_of_square(contract(of.mean, reading), contract(of.difference, reading),
+                             contract(of.beside, reading));
   }
 
   bool is_active(std::uint32_t particle) const {
@@ -174,27 +234,12 @@ class Calibrator {
   }
 
   void fill_patches() {
-    std::ranges::fill(patches_, Patch{});
-    for (const Face& face : faces_) {
-      const double size = area(face);
-      for (std::size_t i = 0; i < face.size; ++i) patches_[face.particles[i]].area += size;
-    }
-    for (const Contribution& part : stencils_.contributions) {
-      const Face& face = faces_[part.face];
-      const double weight = factors_[part.stencil] * part.weight;
-      for (std::size_t c = 0; c < face.size; ++c) {
-        const std::uint32_t particle = face.particles[c];
-        if (!is_active(particle)) continue;
-        const Moments energy = moments(readings_[part.stencil], particle);
-        const Moments own = moments(stencils_.stencils[part.stencil].reading, particle);
-        if (!(own[0] > 0)) continue;
-        MomentMatrix& stored = patches_[particle].stored;
-        for (std::size_t i = 0; i < kMoments; ++i) {
-          for (std::size_t j = 0; j < kMoments; ++j) {
-            stored[i][j] += weight * energy[i] * own[j] / own[0];
-          }
-        }
-      }
+    for (std::size_t p = 0; p < patches_.size(); ++p) patches_[p] = {.area = areas_[p]};
+    for (const auto& [stencil, particle, weight] : parts_) {
+      if (!is_active(particle)) continue;
+      const Moments energy = moments(readings_[stencil], particle);
+      const Moments own = moments(stencils_.stencils[stencil].reading, particle);
+      if (own[0] > 0) patches_[particle].add(factors_[stencil] * weight / own[0], energy, own);
     }
   }
 
@@ -215,9 +260,10 @@ class Calibrator {
         if (!is_active_[p]) continue;
         const double share = 1.0 / (1 + static_cast<double>(neighbours(p).size()));
         patches_[p] = {};
-        patches_[p].add(share, before[p], {});
+        patches_[p].add(share, before[p].stored, before[p].area);
         for (const auto& [other, turn] : neighbours(p)) {
-          if (is_active_[other]) patches_[p].add(share, before[other], turn);
+          if (is_active_[other])
+            patches_[p].add(share, turn(before[other].stored), before[other].area);
         }
       }
     }
@@ -243,13 +289,9 @@ class Calibrator {
       if (is_active_[p]) at[p] = coefficients(patches_[p]);
     }
     std::vector<double> sums(factors_.size(), 0), counts(factors_.size(), 0);
-    for (const Contribution& part : stencils_.contributions) {
-      const Face& face = faces_[part.face];
-      for (std::size_t c = 0; c < face.size; ++c) {
-        const std::uint32_t particle = face.particles[c];
-        counts[part.stencil] += part.weight;
-        sums[part.stencil] += part.weight * factor_by(at[particle], part.stencil, particle);
-      }
+    for (const auto& [stencil, particle, weight] : parts_) {
+      counts[stencil] += weight;
+      sums[stencil] += weight * factor_by(at[particle], stencil, particle);
     }
     for (std::size_t s = 0; s < factors_.size(); ++s) {
       if (counts[s] > 0) factors_[s] *= sums[s] / counts[s];
@@ -262,40 +304,41 @@ class Calibrator {
     for (const Contribution& part : stencils_.contributions) {
       weights[part.stencil] += factors_[part.stencil] * part.weight;
     }
-    for_each_end([&](std::uint32_t s, std::uint32_t particle, double w) {
-      stiffness[particle] += weights[s] * w * w;
-    });
-    std::vector<Tensor> moved(patches_.size());
+    for (std::uint32_t s = 0; s < weights.size(); ++s) {
+      for_each_end(
+          s, [&](std::uint32_t particle, double w) { stiffness[particle] += weights[s] * w * w; });
+    }
+    std::vector<Tensor> moved(patches_.size()), pulls;
     for (int i = 0; i < tuning::kSettlings; ++i) {
-      read(moved);
-      std::vector<Tensor> pulls(patches_.size());
-      for_each_end([&](std::uint32_t s, std::uint32_t particle, double w) {
-        pulls[particle] = plus(pulls[particle], weights[s] * w, readings_[s]);
-      });
+      pulls.assign(patches_.size(), {});
+      for (std::uint32_t s = 0; s < readings_.size(); ++s) {
+        const Tensor reading = read(s, moved);
+        for_each_end(s, [&](std::uint32_t particle, double w) {
+          pulls[particle] = plus(pulls[particle], weights[s] * w, reading);
+        });
+      }
       for (std::size_t p = 0; p < moved.size(); ++p) {
         if (!is_free_[p] || !is_active_[p] || !(stiffness[p] > 0)) continue;
         moved[p] = plus(moved[p], -tuning::kSettlingShare / stiffness[p], pulls[p]);
       }
     }
-    read(moved);
+    for (std::uint32_t s = 0; s < readings_.size(); ++s) readings_[s] = read(s, moved);
   }
 
   template <class Call>
-  void for_each_end(const Call& call) const {
-    for (std::uint32_t s = 0; s < stencils_.stencils.size(); ++s) {
-      const Stencil& stencil = stencils_.stencils[s];
-      for (std::size_t i = 0; i < stencil.particles.size(); ++i) {
-        if (stencil.particles[i] != kNoIndex) call(s, stencil.particles[i], stencil.weights[i]);
-      }
+  void for_each_end(std::uint32_t s, const Call& call) const {
+    const Stencil& stencil = stencils_.stencils[s];
+    for (std::size_t i = 0; i < stencil.particles.size(); ++i) {
+      if (stencil.particles[i] != kNoIndex) call(stencil.particles[i], stencil.weights[i]);
     }
   }
 
   /// moved: by how much particles have left a surface of curvature K: the product with K.
-  void read(const std::vector<Tensor>& moved) {
-    for (std::size_t s = 0; s < readings_.size(); ++s) readings_[s] = stencils_.stencils[s].reading;
-    for_each_end([&](std::uint32_t s, std::uint32_t particle, double w) {
-      readings_[s] = plus(readings_[s], w, moved[particle]);
-    });
+  Tensor read(std::uint32_t s, const std::vector<Tensor>& moved) const {
+    Tensor reading = stencils_.stencils[s].reading;
+    for_each_end(
+        s, [&](std::uint32_t particle, double w) { reading = plus(reading, w, moved[particle]); });
+    return reading;
   }
 
   double factor_by(const Moments& coefficients, std::uint32_t stencil,
@@ -310,11 +353,14 @@ class Calibrator {
   const std::vector<Face>& faces_;
   const Stencils& stencils_;
   const Corners corners_;
+  const std::vector<Part> parts_;
   std::vector<Axes> axes_;
+  std::vector<Readings> forms_;  ///< in the axes
   std::vector<std::size_t> first_neighbour_;
   std::vector<Neighbour> neighbours_;  ///< of one particle after the other
   const std::vector<bool> is_sewn_;    ///< particles on a seam
   const std::vector<bool> is_free_;    ///< particles that leave a cylinder by themselves
+  std::vector<double> areas_;          ///< m^2, of all faces at a particle
   std::vector<double> factors_;        ///< of elements
   std::vector<Tensor> readings_;       ///< of elements, when the particles have settled
   std::vector<Patch> patches_;         ///< around particles

@@ -12,9 +12,9 @@ inline constexpr std::size_t kMoments = 5;
 using Moments = std::array<double, kMoments>;
 using MomentMatrix = std::array<Moments, kMoments>;
 
-/// Moments of (u^T M u)^2, with the unit vector u at the angle a.
-inline Moments moments_of_square(double xx, double yy, double xy) {
-  const double mean = (xx + yy) / 2, c = (xx - yy) / 2, s = xy;
+/// Moments of (u^T M u)^2, with the unit vector u at the angle a: u^T M u is mean + c cos 2a + s
+/// sin 2a.
+inline Moments moments_of_square(double mean, double c, double s) {
   return {mean * mean + (c * c + s * s) / 2, 2 * mean * c, 2 * mean * s, (c * c - s * s) / 2,
           c * s};
 }

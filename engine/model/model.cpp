@@ -37,6 +37,17 @@ std::vector<Tether> acting_tethers(const SceneDescription& d) {
 
 std::uint64_t pair_of(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a} << 32 | b; }
 
+/// Lists grow by doubling, and a model does not grow.
+void shrink_lists(Model& m) {
+  const auto fit = [](auto&... lists) { (lists.shrink_to_fit(), ...); };
+  ConstraintStore& c = m.constraints;
+  fit(c.a, c.b, c.rest_length, c.compliance, c.effective_mass, c.colour, c.described, c.slot);
+  fit(m.membrane.slots, m.membrane.rest, m.membrane.element, m.membrane.described);
+  BendingStore& b = m.bending;
+  fit(b.slots, b.weights, b.rest, b.compliance, b.fold);
+  fit(m.surface, m.air.triangles, m.holds);
+}
+
 }  // namespace
 
 /// The known parts of the description, by its numbers, while the model is built.
@@ -97,6 +108,7 @@ Model::Model(const SceneDescription& description, const Model* like)
   }
   uneven = find_unevenness(inverse_mass, constraints.a, constraints.b, constraints.rest_length);
   find_joined();
+  shrink_lists(*this);
 }
 
 namespace {

@@ -4,11 +4,11 @@
 #include <weft/scene_fields.h>
 #include <weft/weft.h>
 
-#include <string>
 #include <string_view>
 
 namespace weft {
 
+class FieldName;
 class Model;
 
 Result<void> validate(const SceneDescription& description);
@@ -18,12 +18,12 @@ Result<void> validate_elements(const SceneDescription& description);
 /// Checks a description, except its particles, elements and spheres.
 Result<void> validate_material(const SceneDescription& description);
 Result<void> validate_damping(const Damping& damping);
-Result<void> validate_number(Values values, const std::string& field, double value);
+Result<void> validate_number(Values values, const FieldName& field, double value);
 /// Particles of the scene, and no two alike.
-Result<void> validate_corners(const std::string& field, std::span<const std::uint32_t> corners,
+Result<void> validate_corners(const FieldName& field, std::span<const std::uint32_t> corners,
                               std::size_t particles);
 /// Checks the normal of a backstop.
-Result<void> validate_normal(const std::string& field, Vec3 normal);
+Result<void> validate_normal(const FieldName& field, Vec3 normal);
 /// Checks the places of all anchors; normals: or none.
 Result<void> validate_anchor_move(const Model& model, std::span<const Vec3> points,
                                   std::span<const Vec3> normals);

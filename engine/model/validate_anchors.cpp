@@ -7,7 +7,7 @@
 
 namespace weft {
 
-Result<void> validate_normal(const std::string& field, Vec3 normal) {
+Result<void> validate_normal(const FieldName& field, Vec3 normal) {
   if (!finite(normal)) return refuse(field, "must be finite", text(normal));
   const double length = hypotenuse(normal.x, normal.y, normal.z);
   if (length > 0 && std::isfinite(length)) return {};

@@ -20,56 +20,57 @@ namespace {
 
 using Rule = Result<void>;
 
-Rule rule_of(const std::string& field, const Constraint& c, std::size_t) {
+Rule rule_of(const FieldName& field, const Constraint& c, std::size_t) {
   return c.a != c.b ? Rule() : refuse(field, "joins a particle to itself", std::to_string(c.a));
 }
 
-Rule rule_of(const std::string& field, const Seam& seam, std::size_t) {
+Rule rule_of(const FieldName& field, const Seam& seam, std::size_t) {
   if (seam.a != seam.b) return {};
   return refuse(field, "sews a particle to itself", std::to_string(seam.a));
 }
 
-Rule rule_of(const std::string& field, const Tether& tether, std::size_t) {
+Rule rule_of(const FieldName& field, const Tether& tether, std::size_t) {
   if (tether.particle != tether.pin) return {};
   return refuse(field, "ties a particle to itself", std::to_string(tether.pin));
 }
 
-Rule rule_of(const std::string& field, const Anchor& anchor, std::size_t) {
+Rule rule_of(const FieldName& field, const Anchor& anchor, std::size_t) {
   if (anchor.backstop_radius == 0) return {};
   if (anchor.backstop_radius < kLeastSquared) {
-    return refuse(field + ".backstop_radius", "must be 0 or at least 1e-150, to be squared",
+    return refuse(field.member("backstop_radius"), "must be 0 or at least 1e-150, to be squared",
                   number(anchor.backstop_radius));
   }
-  return validate_normal(field + ".normal", anchor.normal);
+  return validate_normal(field.member("normal"), anchor.normal);
 }
 
 /// Weights cancel but for their rounding.
 constexpr double kLeastSum = 1e-9;
 
-Rule rule_of_weights(const std::string& field, const BendingElement& b) {
+Rule rule_of_weights(const FieldName& field, const BendingElement& b) {
   double sum = 0, size = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     if (!std::isfinite(b.weights[i]) || std::abs(b.weights[i]) > kMostSquared)
-      return refuse(element(field, i), "must be finite", number(b.weights[i]));
+      return refuse(field.at(i), "must be finite", number(b.weights[i]));
     sum += b.weights[i];
     size += std::abs(b.weights[i]);
   }
   if (b.particles[3] == kNoIndex && b.weights[3] != 0)
-    return refuse(element(field, 3), "has no particle", number(b.weights[3]));
+    return refuse(field.at(3), "has no particle", number(b.weights[3]));
   if (size > 0 && std::abs(sum) <= kLeastSum * size) return {};
   return refuse(field, "must sum to 0 and not all be 0", number(sum));
 }
 
-Rule rule_of(const std::string& field, const BendingElement& b, std::size_t particles) {
+Rule rule_of(const FieldName& field, const BendingElement& b, std::size_t particles) {
   const bool has_three = b.particles[3] == kNoIndex;
   const auto corners = std::span(b.particles).first(has_three ? 3 : 4);
-  if (auto r = validate_corners(field + ".particles", corners, particles); !r) return r;
-  if (auto r = rule_of_weights(field + ".weights", b); !r) return r;
+  if (auto r = validate_corners(field.member("particles"), corners, particles); !r) return r;
+  if (auto r = rule_of_weights(field.member("weights"), b); !r) return r;
   if (!std::isfinite(b.fold) || std::abs(b.fold) > kMostSquared)
-    return refuse(field + ".fold", "must be finite", number(b.fold));
+    return refuse(field.member("fold"), "must be finite", number(b.fold));
   if (b.fold == 0) return {};
-  if (has_three) return refuse(field + ".fold", "three particles have no side", number(b.fold));
-  if (b.rest != 0) return refuse(field + ".fold", "has a rest besides", number(b.fold));
+  if (has_three)
+    return refuse(field.member("fold"), "three particles have no side", number(b.fold));
+  if (b.rest != 0) return refuse(field.member("fold"), "has a rest besides", number(b.fold));
   return {};
 }
 
@@ -78,13 +79,14 @@ constexpr double kLeastSide = 1e-75, kMostSide = 1e75;
 /// The least ratio of twice the area of a triangle to two of its sides: below this it is rounding.
 constexpr double kLeastSine = 1e-9;
 
-Rule rule_of(const std::string& element_field, const MembraneElement& e, std::size_t particles) {
-  if (auto r = validate_corners(element_field + ".particles", e.particles, particles); !r) return r;
-  const std::string field = element_field + ".rest";
+Rule rule_of(const FieldName& element_field, const MembraneElement& e, std::size_t particles) {
+  if (auto r = validate_corners(element_field.member("particles"), e.particles, particles); !r)
+    return r;
+  const FieldName field = element_field.member("rest");
   for (std::size_t k = 0; k < 3; ++k) {
     const auto& [u, v] = e.rest[k];
     if (std::isfinite(u) && std::isfinite(v)) continue;
-    return refuse(element(field, k), "must be finite", number(u) + ", " + number(v));
+    return refuse(field.at(k), "must be finite", number(u) + ", " + number(v));
   }
   double sides[3];
   for (std::size_t k = 0; k < 3; ++k) {
@@ -92,7 +94,7 @@ Rule rule_of(const std::string& element_field, const MembraneElement& e, std::si
     const auto& [next_u, next_v] = e.rest[(k + 1) % 3];
     sides[k] = hypotenuse(next_u - u, next_v - v);
     if (sides[k] >= kLeastSide && sides[k] <= kMostSide) continue;
-    return refuse(element(field, k), "must be from 1e-75 to 1e75 m away from the next corner",
+    return refuse(field.at(k), "must be from 1e-75 to 1e75 m away from the next corner",
                   number(sides[k]));
   }
   const double area = reference::shape_of(e.rest).area;
@@ -167,30 +169,30 @@ Rule rule_of_list(const SceneDescription& d, const std::vector<Tether>& tethers)
 
 // ---------------------------------------------------------------------------------- any element
 
-Rule validate_value(Values values, const std::string& field, double value, std::size_t) {
+Rule validate_value(Values values, const FieldName& field, double value, std::size_t) {
   return validate_number(values, field, value);
 }
-Rule validate_value(Values, const std::string& field, std::uint32_t particle, std::size_t count) {
+Rule validate_value(Values, const FieldName& field, std::uint32_t particle, std::size_t count) {
   return validate_particle(field, particle, count);
 }
-Rule validate_value(Values, const std::string& field, ConstraintKind kind, std::size_t) {
+Rule validate_value(Values, const FieldName& field, ConstraintKind kind, std::size_t) {
   return validate_kind(field, kind);
 }
-Rule validate_value(Values values, const std::string& field, Vec3 v, std::size_t) {
+Rule validate_value(Values values, const FieldName& field, Vec3 v, std::size_t) {
   if (values == Values::ruled || finite(v)) return {};
   return refuse(field, "must be finite", text(v));
 }
 template <class T, std::size_t n>
-Rule validate_value(Values, const std::string&, const std::array<T, n>&, std::size_t) {
+Rule validate_value(Values, const FieldName&, const std::array<T, n>&, std::size_t) {
   return {};  // A rule of the element says it.
 }
 
 template <class Element>
-Rule validate_element(const std::string& field, const Element& element, std::size_t particles) {
+Rule validate_element(const FieldName& field, const Element& element, std::size_t particles) {
   Rule result;
   for_each_element_field<Element>([&](const auto& f) {
     if (result)
-      result = validate_value(f.values, field + "." + f.name, element.*f.member, particles);
+      result = validate_value(f.values, field.member(f.name), element.*f.member, particles);
   });
   return result ? rule_of(field, element, particles) : result;
 }
@@ -198,8 +200,9 @@ Rule validate_element(const std::string& field, const Element& element, std::siz
 template <class Element>
 Rule validate_list(const SceneDescription& d, const ElementKind<Element>& kind) {
   const std::vector<Element>& list = d.*kind.list;
+  const FieldName name(kind.name);
   for (std::size_t i = 0; i < list.size(); ++i) {
-    auto r = validate_element(element(kind.name, i), list[i], d.positions.size());
+    auto r = validate_element(name.at(i), list[i], d.positions.size());
     if (!r) return r;
   }
   return rule_of_list(d, list);
@@ -207,7 +210,7 @@ Rule validate_list(const SceneDescription& d, const ElementKind<Element>& kind) 
 
 }  // namespace
 
-Result<void> validate_number(Values values, const std::string& field, double value) {
+Result<void> validate_number(Values values, const FieldName& field, double value) {
   switch (values) {
     case Values::positive:
       return validate_positive(field, value);
@@ -233,12 +236,12 @@ Result<void> validate_number(Values values, const std::string& field, double val
   return {};
 }
 
-Result<void> validate_corners(const std::string& field, std::span<const std::uint32_t> corners,
+Result<void> validate_corners(const FieldName& field, std::span<const std::uint32_t> corners,
                               std::size_t particles) {
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    if (auto r = validate_particle(element(field, i), corners[i], particles); !r) return r;
+    if (auto r = validate_particle(field.at(i), corners[i], particles); !r) return r;
     if (std::ranges::find(corners.first(i), corners[i]) != corners.begin() + static_cast<long>(i))
-      return refuse(element(field, i), "particle is listed twice", std::to_string(corners[i]));
+      return refuse(field.at(i), "particle is listed twice", std::to_string(corners[i]));
   }
   return {};
 }

@@ -9,9 +9,9 @@ namespace weft {
 namespace {
 
 Result<void> validate_air(const Air& air, std::size_t particles) {
+  const FieldName triangles("air.triangles");
   for (std::size_t i = 0; i < air.triangles.size(); ++i) {
-    const std::string field = element("air.triangles", i);
-    if (auto r = validate_corners(field, air.triangles[i], particles); !r) return r;
+    if (auto r = validate_corners(triangles.at(i), air.triangles[i], particles); !r) return r;
   }
   const ChangedAir numbers{air.density, air.drag, air.lift, air.ram};
   if (auto r = weft::validate_air(numbers, !air.triangles.empty()); !r) return r;
@@ -53,9 +53,9 @@ Result<void> validate_damping(const Damping& damping) {
 }
 
 Result<void> validate_material(const SceneDescription& d) {
+  const FieldName surface("surface");
   for (std::size_t i = 0; i < d.surface.size(); ++i) {
-    if (auto r = validate_corners(element("surface", i), d.surface[i], d.positions.size()); !r)
-      return r;
+    if (auto r = validate_corners(surface.at(i), d.surface[i], d.positions.size()); !r) return r;
   }
   if (auto r = validate_damping(d.damping); !r) return r;
   const auto place = [&](std::uint32_t i) { return to_internal(d.positions[i]); };

@@ -11,13 +11,13 @@ namespace {
 /// is whose neighbour.
 constexpr std::size_t kMostParticles = std::size_t{1} << 28;
 
-Result<void> validate_index_list(std::string_view field, std::span<const std::uint32_t> list,
+Result<void> validate_index_list(const FieldName& field, std::span<const std::uint32_t> list,
                                  std::size_t particles) {
   std::vector<bool> seen(particles);
   for (std::size_t i = 0; i < list.size(); ++i) {
-    if (auto r = validate_particle(element(field, i), list[i], particles); !r) return r;
+    if (auto r = validate_particle(field.at(i), list[i], particles); !r) return r;
     if (seen[list[i]]) {
-      return refuse(element(field, i), "particle is listed twice", std::to_string(list[i]));
+      return refuse(field.at(i), "particle is listed twice", std::to_string(list[i]));
     }
     seen[list[i]] = true;
   }
@@ -122,9 +122,9 @@ Result<void> validate(const SceneDescription& d) {
     if (auto r = validate_vectors("velocities", d.velocities, particles); !r) return r;
   }
   if (auto r = validate_size("masses", d.masses.size(), particles); !r) return r;
+  const FieldName masses("masses");
   for (std::size_t i = 0; i < particles; ++i) {
-    if (auto r = validate_positive(element("masses", i), d.masses[i]); !r) return r;
-    if (auto r = validate_square(element("masses", i), d.masses[i]); !r) return r;
+    if (auto r = validate_number(Values::squared, masses.at(i), d.masses[i]); !r) return r;
   }
   if (auto r = validate_index_list("fixed", d.fixed, particles); !r) return r;
   if (auto r = validate_elements(d); !r) return r;

@@ -79,7 +79,7 @@ void BendingFactor::factorise(const BendingLaw& law) {
       factor_.at(fronts_.entry_place[e]) = law.stiffness * rows_.values[fronts_.entry_value[e]];
     for (std::size_t c = 0; c < front.count; ++c) {
       factor_.at(front.panel + c * (front.stride() + 1)) +=
-          law.inertia * rows_.doubles.mass[fronts_.slots[front.first + c]];
+          law.inertia * rows_.mass[fronts_.slots[front.first + c]];
     }
     factor_.eliminate(i);
   }

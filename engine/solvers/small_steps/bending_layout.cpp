@@ -105,6 +105,9 @@ BendingLayout make_bending_layout(const Model& model) {
   layout.beside = particles_beside(model);
   BendingLayoutBuilder builder(model, layout);
   for (const bool four : {false, true}) builder.add_batches(four);
+  layout.blocks.shrink_to_fit();
+  layout.element.shrink_to_fit();
+  layout.folds.shrink_to_fit();
   layout.rows = make_bending_rows(model);
   return layout;
 }

@@ -21,44 +21,39 @@ struct BendingLaw {
   friend bool operator==(const BendingLaw&, const BendingLaw&) = default;
 };
 
-/// Values of rows, in float or in double.
-template <class Real>
-struct BendingValues {
-  kernels::AlignedVector<Real> value;     // by groups of rows (simd::BendingMatrix)
-  kernels::AlignedVector<Real> mass;      // per slot, kg; of what is fixed or in no element: 0
-  kernels::AlignedVector<Real> diagonal;  // per slot, of K
-};
-
 struct BendingRows {
   Lists columns;               // per slot: slots, ascending, its own among them
   std::vector<double> values;  // in the order of columns.items, N/m
-  // The same by groups of rows.
+  // The same by groups of rows (simd::BendingMatrix).
   std::vector<std::uint32_t> begin;
   std::vector<std::int32_t> column;
-  BendingValues<float> floats;
-  BendingValues<double> doubles;
+  kernels::AlignedVector<float> floats;  // values
+  // Per slot.
+  kernels::AlignedVector<double> mass;  // kg; of what is fixed or in no element: 0
+  kernels::AlignedVector<float> float_mass;
+  std::vector<double> diagonal;  // of K
 
   double stiffest = 0;  // 1/s^2, no swing has a larger square of its frequency
 
   bool empty() const { return values.empty(); }
-  std::size_t slots() const { return doubles.mass.size(); }
+  std::size_t slots() const { return mass.size(); }
   std::size_t groups() const { return begin.empty() ? 0 : begin.size() - 1; }
   /// Whether it is free and in an element.
-  bool bends(std::size_t slot) const { return doubles.mass[slot] > 0; }
+  bool bends(std::size_t slot) const { return mass[slot] > 0; }
+  /// Values by groups. In doubles only stiff bending wants them.
   template <class Real>
-  const BendingValues<Real>& of() const {
+  kernels::AlignedVector<Real> values_by_groups() const;
+  template <class Real>
+  simd::BendingMatrix<Real> matrix(const BendingLaw& law, const Real* by_groups) const {
+    const Real* masses = nullptr;
     if constexpr (std::is_same_v<Real, float>)
-      return floats;
+      masses = float_mass.data();
     else
-      return doubles;
-  }
-  template <class Real>
-  simd::BendingMatrix<Real> matrix(const BendingLaw& law) const {
-    const BendingValues<Real>& v = of<Real>();
+      masses = mass.data();
     return {begin.data(),
             column.data(),
-            v.value.data(),
-            v.mass.data(),
+            by_groups,
+            masses,
             static_cast<Real>(law.inertia),
             static_cast<Real>(law.stiffness)};
   }

@@ -40,6 +40,15 @@ void BendingSystem<Real>::allocate() {
   reciprocal_.resize(rows_.slots());
   sums_.resize((rows_.slots() + kSlotsOfSum - 1) / kSlotsOfSum);
   norms_.resize(sums_.size());
+  if constexpr (std::is_same_v<Real, double>) values_ = rows_.values_by_groups<double>();
+}
+
+template <class Real>
+const Real* BendingSystem<Real>::values() const {
+  if constexpr (std::is_same_v<Real, double>)
+    return values_.data();
+  else
+    return rows_.floats.data();
 }
 
 template <class Real>
@@ -72,10 +81,9 @@ void BendingSystem<Real>::prepare_diagonal(const BendingLaw& law) {
   if (guess_.empty()) allocate();
   prepared_ = law;
   factor_ = nullptr;
-  const BendingValues<double>& of = rows_.doubles;
   for (std::size_t slot = 0; slot < rows_.slots(); ++slot) {
-    const double own = law.inertia * of.mass[slot] + law.stiffness * of.diagonal[slot];
-    reciprocal_[slot] = static_cast<Real>(of.mass[slot] > 0 ? 1 / own : 0);
+    const double own = law.inertia * rows_.mass[slot] + law.stiffness * rows_.diagonal[slot];
+    reciprocal_[slot] = static_cast<Real>(rows_.bends(slot) ? 1 / own : 0);
   }
 }
 
@@ -173,7 +181,7 @@ double BendingSystem<Real>::solve_exactly(const simd::BendingMatrix<Real>& a,
 
 template <class Real>
 double BendingSystem<Real>::solve(const BendingLaw& law, const BendingLimits& limits, Team& team) {
-  const simd::BendingMatrix<Real> a = rows_.matrix<Real>(law);
+  const simd::BendingMatrix<Real> a = rows_.matrix<Real>(law, values());
   const bool has_factor = factor_ != nullptr;
   steps_ = 0;
   if (has_factor && factor_->law == law) return solve_exactly(a, limits, team);
@@ -197,7 +205,7 @@ std::size_t BendingSystem<Real>::bytes() const {
   std::size_t of_factors = 0;
   for (const Factor& made : made_) of_factors += made.factor->bytes();
   return 4 * bytes_of(guess_) + bytes_of(direction_) + bytes_of(reciprocal_) + bytes_of(sums_) +
-         bytes_of(norms_) + bytes_of(z_) + of_factors;
+         bytes_of(norms_) + bytes_of(z_) + bytes_of(values_) + of_factors;
 }
 
 template class BendingSystem<float>;

@@ -45,6 +45,7 @@ class BendingSystem {
 
   /// Allocates the memory of a solution. Else the first preparation does it.
   void allocate();
+  const Real* values() const;
   /// Solutions by this law, or nearly so, are to come.
   void prepare_diagonal(const BendingLaw& law);
   /// exactly: by this very law.
@@ -100,7 +101,8 @@ class BendingSystem {
   kernels::AlignedVector<Real> reciprocal_;  // per slot
   std::vector<double> sums_;                 // per range
   std::vector<simd::BendingNorms> norms_;
-  kernels::AlignedVector<double> z_;  // the residual, preconditioned
+  kernels::AlignedVector<double> z_;       // the residual, preconditioned
+  kernels::AlignedVector<double> values_;  // of rows by groups, where these are doubles
   std::vector<Factor> made_;
   Factor* factor_ = nullptr;  // or null: the diagonal
   std::uint64_t uses_ = 0;

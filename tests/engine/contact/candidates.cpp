@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/contact/near.h"
+#include "engine/contact/rest_distances.h"
 #include "engine/contact/tangles.h"
 #include "engine/model/model.h"
 #include "kernels/reference/distances.h"
@@ -473,6 +474,52 @@ TEST_CASE(
   CHECK(inside > 0);
   CHECK(placed > 10);
   CHECK(placed < 0.5 * static_cast<double>(ball.from.size()));
+}
+
+/// A flat sheet of triangles of 0.5 to 6 mm: heights of some are above the thickness, of others
+/// below it.
+TEST_CASE("features of a sheet that are nearer at rest than the thickness are all known") {
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    MeshDescription mesh = irregular_triangles(10, 0.2, random);
+    for (Vec3& x : mesh.positions) x = {5e-4 * std::pow(1.6, x.x), 3e-3 * x.y, 0};
+    SceneDescription scene = made(mesh).scene;
+    scene.self_contact = {.on = true, .thickness = kThickness};
+    const auto model = model_of(scene);
+    const TriangleSurface& s = model->touched_surface();
+    const RestDistances rest(*model, kThickness, SewnPoints(*model));
+    const auto at = [&](std::uint32_t point) -> Vector { return model->initial_position[point]; };
+    std::size_t nearer = 0;
+    const auto hold = [&](PairKind kind, std::uint32_t first, std::uint32_t second, Vector r) {
+      Pair pair;
+      pair.kind = kind;
+      pair.first = first;
+      pair.second = second;
+      const double distance = length(r);
+      nearer += distance < kThickness;
+      const double kept = distance < kThickness ? tuning::kRestDistance * distance : kThickness;
+      CHECK(rest.of(pair) == doctest::Approx(kept).epsilon(1e-9));
+    };
+    for (std::uint32_t t = 0; t < s.triangles.size(); ++t) {
+      const auto [a, b, c] = s.triangles[t];
+      for (std::uint32_t p = 0; p < s.triangles_at.size(); ++p) {
+        if (s.triangles_at[p].empty() || p == a || p == b || p == c) continue;
+        hold(PairKind::point_triangle, p, t,
+             reference::nearest_in_triangle(at(p), at(a), at(b), at(c)).r);
+      }
+    }
+    for (std::uint32_t i = 0; i < s.edges.size(); ++i) {
+      for (std::uint32_t j = 0; j < i; ++j) {
+        const auto [a, b] = s.edges[i];
+        const auto [c, d] = s.edges[j];
+        if (a == c || a == d || b == c || b == d) continue;
+        hold(PairKind::edges, i, j, reference::nearest_of_edges(at(a), at(b), at(c), at(d)).r);
+      }
+    }
+    CHECK(rest.count() == nearer);
+    CHECK(nearer > 100);
+  }
 }
 
 }  // namespace

@@ -150,8 +150,9 @@ void check_rows() {
         else
           return simd::table(isa).bend_doubles;
       }();
-      const double product =
-          kernels.multiply(system.rows.matrix<Real>(law), p, q.data(), 0, system.rows.groups());
+      const auto values = system.rows.values_by_groups<Real>();
+      const double product = kernels.multiply(system.rows.matrix<Real>(law, values.data()), p,
+                                              q.data(), 0, system.rows.groups());
       const Eigen::MatrixXd x = system.columns(p);
       const Eigen::MatrixXd expected = test::product(system.dense(law), x);
       const double rounding = std::is_same_v<Real, float> ? 1e-6 : 1e-14;
@@ -209,7 +210,7 @@ TEST_CASE("a solution from a guess is the same, and a right guess takes no steps
       const auto row = static_cast<Eigen::Index>(slot);
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         const std::size_t at = 4 * slot + static_cast<std::size_t>(axis);
-        const double mass = system.rows.doubles.mass[slot];
+        const double mass = system.rows.mass[slot];
         solver.solver.guess()[at] = mass > 0 ? guess(row, axis) : 0;
         solver.solver.residual()[at] =
             mass > 0 ? left(row, axis) + law.inertia * mass * guess(row, axis) : 0;
@@ -264,7 +265,7 @@ TEST_CASE("no swing is stiffer than its bound, which a light particle leaves tig
   const System system(scene);
   Eigen::MatrixXd root = Eigen::MatrixXd::Zero(system.size(), 1);
   for (Eigen::Index slot = 0; slot < system.size(); ++slot) {
-    const double mass = system.rows.doubles.mass[static_cast<std::size_t>(slot)];
+    const double mass = system.rows.mass[static_cast<std::size_t>(slot)];
     if (mass > 0) root(slot, 0) = 1 / std::sqrt(mass);
   }
   const Eigen::MatrixXd k = system.dense({0, 1});
@@ -289,8 +290,8 @@ TEST_CASE("cloth that is soft in a substep takes few steps") {
   } cases[] = {{1e-3, 2}, {1e-1, 8}, {1, 20}};
   for (const auto& [share, most] : cases) {
     const System system(woven(31, 1));
-    const double stiffest = *std::ranges::max_element(system.rows.doubles.diagonal);
-    const double heaviest = *std::ranges::max_element(system.rows.doubles.mass);
+    const double stiffest = *std::ranges::max_element(system.rows.diagonal);
+    const double heaviest = *std::ranges::max_element(system.rows.mass);
     const BendingLaw law{stiffest / (20 * share * heaviest), 1};
     Solver<float> solver(system, false, law);
     solver.solve(system.random_vector(), law, {1e-2, 0, 100}, team);
@@ -345,8 +346,7 @@ TEST_CASE("what is nothing beside the weight is left") {
   double all = 0;  // r . r / diagonal
   for (std::size_t slot = 0; slot < system.rows.slots(); ++slot) {
     if (!system.rows.bends(slot)) continue;
-    const double own =
-        law.inertia * system.rows.doubles.mass[slot] + system.rows.doubles.diagonal[slot];
+    const double own = law.inertia * system.rows.mass[slot] + system.rows.diagonal[slot];
     for (std::size_t k = 4 * slot; k < 4 * slot + 3; ++k) all += right[k] * right[k] / own;
   }
   Solver<double> solver(system, false, law);
