@@ -18,6 +18,15 @@ Result<void> move_pins(weft_cloth* cloth, std::size_t count, const std::uint32_t
   return (cloth->cloth.*move)(who, where);
 }
 
+Result<void> with_seams(weft_cloth* cloth, std::size_t count, const std::uint32_t* seams,
+                        Result<void> (Cloth::*give)(std::span<const std::uint32_t>)) {
+  if (auto r = given({{"cloth", cloth}}); !r) return r;
+  Arrays in;
+  const auto which = in.needed<std::uint32_t>("seams", seams, count);
+  if (!in.are_good()) return in.error();
+  return (cloth->cloth.*give)(which);
+}
+
 RigidMotion motion_of(const double* translation, const double* rotation, const double* about) {
   return {vector_of(translation), vector_of(rotation), vector_of(about)};
 }
@@ -146,6 +155,14 @@ weft_result weft_scale_anchors(weft_cloth* cloth, double scale) {
     if (auto r = given({{"cloth", cloth}}); !r) return r;
     return cloth->cloth.scale_anchors(scale);
   });
+}
+
+weft_result weft_release_seams(weft_cloth* cloth, size_t count, const uint32_t* seams) {
+  return call([&] { return with_seams(cloth, count, seams, &weft::Cloth::release_seams); });
+}
+
+weft_result weft_close_seams(weft_cloth* cloth, size_t count, const uint32_t* seams) {
+  return call([&] { return with_seams(cloth, count, seams, &weft::Cloth::close_seams); });
 }
 
 weft_result weft_carry(weft_cloth* cloth, const double translation[3], const double rotation[3],

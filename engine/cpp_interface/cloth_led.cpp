@@ -123,6 +123,24 @@ Result<void> Cloth::scale_anchors(double scale) {
   return {};
 }
 
+Result<void> Cloth::release_seams(std::span<const std::uint32_t> seams) {
+  State& s = impl_->state;
+  if (auto r = validate_seams(*s.model, seams); !r) return r;
+  for (const std::uint32_t seam : seams) {
+    if (s.seams.release(seam)) s.wake();
+  }
+  return {};
+}
+
+Result<void> Cloth::close_seams(std::span<const std::uint32_t> seams) {
+  State& s = impl_->state;
+  if (auto r = validate_seams(*s.model, seams); !r) return r;
+  for (const std::uint32_t seam : seams) {
+    if (s.seams.close(seam, *s.model, s.position, s.settings.contact_tolerance)) s.wake();
+  }
+  return {};
+}
+
 Result<void> Cloth::carry(const RigidMotion& motion, double share) {
   if (auto r = validate_motion(motion, share); !r) return r;
   if (share == 0 || is_identity(motion)) return {};

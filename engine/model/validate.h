@@ -30,6 +30,8 @@ Result<void> validate_anchor_move(const Model& model, std::span<const Vec3> poin
 Result<void> validate_anchor_limits(const Model& model, std::span<const AnchorLimit> limits);
 Result<void> validate_anchor_limit(const Model& model, std::uint32_t anchor,
                                    const AnchorLimit& limit);
+/// Checks numbers of seams.
+Result<void> validate_seams(const Model& model, std::span<const std::uint32_t> seams);
 Result<void> validate_gravity(Vec3 gravity);
 Result<void> validate_wind(Vec3 wind);
 Result<void> validate_air(const ChangedAir& air, bool has_triangles);

@@ -36,6 +36,16 @@ Result<void> validate_anchor_limit(const Model& model, std::uint32_t anchor,
                          limit.max_distance);
 }
 
+Result<void> validate_seams(const Model& model, std::span<const std::uint32_t> seams) {
+  for (std::size_t i = 0; i < seams.size(); ++i) {
+    if (seams[i] < model.seams.size()) continue;
+    return refuse(element("seams", i),
+                  "no such seam, the scene has " + std::to_string(model.seams.size()),
+                  std::to_string(seams[i]));
+  }
+  return {};
+}
+
 Result<void> validate_anchor_move(const Model& model, std::span<const Vec3> points,
                                   std::span<const Vec3> normals) {
   const std::size_t count = model.anchors.described.size();

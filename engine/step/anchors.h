@@ -25,7 +25,7 @@ class Anchors {
 
   /// normals: or none, and they stay.
   void move(std::span<const Vec3> points, std::span<const Vec3> normals);
-  /// All positions were replaced: nobody travels.
+  /// All positions were replaced: nobody travels, and no limit changes by and by.
   void put_down();
   /// All are taken along: moved(point), turned(normal).
   template <class Moved, class Turned>

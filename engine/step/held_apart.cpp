@@ -40,7 +40,7 @@ void look_at_seams(const State& s, HeldApart& found) {
     if (s.model->inverse_mass[a] + s.model->inverse_mass[b] > 0) continue;
     const SeamState& state = s.seams.states()[i];
     const double gap = length(s.position[a] - s.position[b]);
-    if (state.is_closed || gap <= s.settings.contact_tolerance) continue;
+    if (!state.is_open() || gap <= s.settings.contact_tolerance) continue;
     ++found.count;
     found.is_infeasible = found.is_infeasible || state.is_late();
     if (gap > widest) found.seam = static_cast<std::uint32_t>(i);

@@ -16,8 +16,17 @@ void Seams::begin(const Model& model, const kernels::Vectors& x, double toleranc
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const double way = gap(model, i, x);
     const double time = model.seams.time[i];
-    states_[i] = {way / time, time, way <= tolerance};
+    states_[i] = {way / time, time, way <= tolerance, states_[i].is_released};
   }
+}
+
+bool Seams::close(std::uint32_t seam, const Model& model, const kernels::Vectors& x,
+                  double tolerance) {
+  if (!states_[seam].is_released) return false;
+  const double way = gap(model, seam, x);
+  const double time = model.seams.time[seam];
+  states_[seam] = {way / time, time, way <= tolerance, false};
+  return true;
 }
 
 SeamGaps measure_seams(const Model& model, std::span<const SeamState> states,
@@ -25,6 +34,7 @@ SeamGaps measure_seams(const Model& model, std::span<const SeamState> states,
   SeamGaps gaps;
   double widest = 0;
   for (std::size_t i = 0; i < states.size(); ++i) {
+    if (states[i].is_released) continue;
     if (states[i].is_closed) {
       gaps.largest = std::max(gaps.largest, gap(model, i, x));
       continue;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/model/model.h"
@@ -11,8 +12,8 @@
 namespace weft {
 
 void visit_fields(Is<SeamState> auto& state, auto& archive) {
-  auto& [speed, left, is_closed] = state;
-  archive(speed, left, is_closed);
+  auto& [speed, left, is_closed, is_released] = state;
+  archive(speed, left, is_closed, is_released);
 }
 
 class Seams {
@@ -22,6 +23,10 @@ class Seams {
 
   /// Positions were given: a gap that they leave, m, closes in the time of its seam.
   void begin(const Model& model, const kernels::Vectors& x, double tolerance);
+  /// Whether it was not released before.
+  bool release(std::uint32_t seam) { return !std::exchange(states_[seam].is_released, true); }
+  /// One that was released draws again, over the gap that there is now. Whether it was released.
+  bool close(std::uint32_t seam, const Model& model, const kernels::Vectors& x, double tolerance);
   /// A step was done.
   void take(std::span<const SeamState> states) { states_.assign(states.begin(), states.end()); }
 

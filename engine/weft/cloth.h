@@ -147,7 +147,8 @@ struct StepReport {
   /// step that began without any and ends with some has not converged.
   int tangled = 0;
   double max_anchor_error = 0;  ///< m, by which an anchor's limits, or a tether's, are exceeded
-  int open_seams = 0;           ///< seams whose particles have not come together yet (Seam)
+  /// Seams whose particles have not come together yet (Seam), without released ones.
+  int open_seams = 0;
   double max_seam_gap = 0;  ///< m, between particles of closed seams: bounded by contact_tolerance
   double seam_work = 0;     ///< J, work of open seams in this step
   /// m/s, an estimate of the largest error of motion that this step adds to a particle. Without a
@@ -389,7 +390,8 @@ class WEFT_API Cloth {
                            std::span<const Vec3> positions);
   /// Moves the points of all anchors, in the order of the description. They travel there in
   /// straight lines, and normals turn evenly, during the next step. The last move before a step
-  /// counts. Call move_anchors before write_positions, and anchors jump instead of travelling.
+  /// counts. Call move_anchors before write_positions, and anchors jump instead of travelling; so
+  /// do limits.
   /// normals: one per anchor, of any length but 0 if there is a backstop; empty: as they are.
   Result<void> move_anchors(std::span<const Vec3> points, std::span<const Vec3> normals = {});
   /// Sets the limits of all anchors, in the order of the description: it loosens or tightens them,
@@ -404,6 +406,14 @@ class WEFT_API Cloth {
   /// smaller scale lets the cloth of a character move less by itself. Distances of 0 and infinite
   /// ones stay.
   Result<void> scale_anchors(double scale);
+
+  /// Releases seams, by their numbers in the description: from the next step on they hold nothing,
+  /// open ones either. Edges and faces at the two particles still do not collide (SelfContact).
+  /// Seams that were released already stay so. On an error none is released.
+  Result<void> release_seams(std::span<const std::uint32_t> seams);
+  /// Closes seams that were released: each draws its particles together again, from where they are,
+  /// in its time and by its force. Other seams stay as they are. On an error none is closed.
+  Result<void> close_seams(std::span<const std::uint32_t> seams);
 
   /// Moves the whole cloth at once by a share, 0 to 1, of a rigid motion (of its translation and
   /// its angle), without accelerating it: positions, fixed particles, anchors and the solver's

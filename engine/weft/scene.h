@@ -203,9 +203,9 @@ struct Tether {
 /// together along the straight line between them in the time `time`, never faster. If max_force is
 /// too small for that, they take longer. Then the seam is closed for good: it holds any force. An
 /// open seam does not count as an error until its time is over (StepReport::open_seams,
-/// late_seams). Positions that are written apart from each other open it again. Faces and edges of
-/// the cloth at one of the two particles do not collide with those at the other (SelfContact).
-/// Solver small_steps only.
+/// late_seams). Positions that are written apart from each other open it again.
+/// Cloth::release_seams undoes it. Faces and edges of the cloth at one of the two particles do not
+/// collide with those at the other (SelfContact). Solver small_steps only.
 struct Seam {
   std::uint32_t a = 0;
   std::uint32_t b = 0;

@@ -379,6 +379,9 @@ WEFT_API weft_result weft_limit_anchors(weft_cloth* cloth, size_t count,
 WEFT_API weft_result weft_limit_anchor(weft_cloth* cloth, uint32_t anchor, double max_distance,
                                        int backstop);
 WEFT_API weft_result weft_scale_anchors(weft_cloth* cloth, double scale);
+/* seams: count numbers of seams. */
+WEFT_API weft_result weft_release_seams(weft_cloth* cloth, size_t count, const uint32_t* seams);
+WEFT_API weft_result weft_close_seams(weft_cloth* cloth, size_t count, const uint32_t* seams);
 
 /* RigidMotion; each or NULL: 0. */
 WEFT_API weft_result weft_carry(weft_cloth* cloth, const double translation[3],

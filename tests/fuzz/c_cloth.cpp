@@ -34,14 +34,14 @@ class Session {
   }
 
   void call_one() {
-    constexpr std::array<Do, 20> kCalls{
+    constexpr std::array<Do, 21> kCalls{
         &Session::step_one,      &Session::step_one,      &Session::step_by_jobs,
         &Session::step_all,      &Session::create,        &Session::copy,
         &Session::save_and_load, &Session::read,          &Session::read_floats,
         &Session::write,         &Session::set_world,     &Session::move_pins,
         &Session::move_anchors,  &Session::limit_anchors, &Session::carry,
         &Session::change,        &Session::add_body,      &Session::move_body,
-        &Session::ask_bodies,    &Session::load_bytes};
+        &Session::ask_bodies,    &Session::load_bytes,    &Session::release_seams};
     (this->*kCalls[drawing_.below(kCalls.size())])();
   }
 
@@ -182,6 +182,13 @@ class Session {
             [&] { return weft_limit_anchors(cloth, count, distances.data(), backstops.data()); });
     changed(cloth, [&] { return weft_limit_anchor(cloth, drawing_.index(count), scale, 1); });
     changed(cloth, [&] { return weft_scale_anchors(cloth, scale); });
+  }
+  void release_seams() {
+    weft_cloth* cloth = some_cloth();
+    const std::size_t count = drawing_.below(3);
+    const auto seams = drawing_.indices(count, 2);
+    const auto how = drawing_.flag() ? weft_release_seams : weft_close_seams;
+    changed(cloth, [&] { return how(cloth, count, seams.data()); });
   }
   void carry() {
     weft_cloth* cloth = some_cloth();

@@ -4,7 +4,9 @@
 #include "engine/saving/fields.h"
 #include "tests/fuzz/checks.h"
 #include "tests/fuzz/stepping.h"
+#include "tools/scenes/anchor_moves.h"
 #include "tools/scenes/body_moves.h"
+#include "tools/scenes/events.h"
 
 namespace weft::fuzz {
 namespace {
@@ -14,7 +16,7 @@ using tools::SceneFile;
 constexpr const char* kNoFolder = "/nowhere";
 
 std::string scene_text_of(const SceneFile& file) {
-  return tools::scene_text(file.description, file.moves, file.faces, file.bodies);
+  return tools::scene_text(file.description, file.moves, file.faces, file.bodies, file.events);
 }
 
 std::vector<std::byte> bits_of(const SceneDescription& scene) {
@@ -35,15 +37,19 @@ void check_survives_writing(const SceneFile& file) {
 void run(const SceneFile& file, Cloth& cloth) {
   const auto bodies = tools::MovedBodies::add(file.bodies, cloth);
   if (!bodies) return check_message(bodies.error());
-  const tools::MovedPins pins(file.moves, cloth);
+  tools::MovedPins pins(file.moves, cloth);
+  const tools::MovedAnchors anchors(file.moves, cloth);
+  tools::Events events(file.events);
   for (const auto& done :
-       {pins.place(cloth), pins.send(cloth, 0.1), bodies.value().send(cloth, 0.1)}) {
+       {pins.place(cloth), events.happen(0.1, cloth, pins), pins.send(cloth, 0.1),
+        anchors.send(cloth, 0.1), bodies.value().send(cloth, 0.1)}) {
     if (!done) check_message(done.error());
   }
   step_twice(cloth);
   const SceneDescription present = tools::present_scene(file.description, cloth);
   const SceneFile later{present, tools::present_moves(file.moves, file.description, 0.1),
-                        file.faces, tools::present_bodies(file.bodies, 0.1)};
+                        file.faces, tools::present_bodies(file.bodies, 0.1),
+                        tools::present_events(file.events, 0.1)};
   const auto read = tools::parse_scene(scene_text_of(later), kNoFolder);
   check(static_cast<bool>(read), read ? "" : read.error());
 }

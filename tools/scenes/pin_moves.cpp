@@ -68,7 +68,12 @@ Vec3 place_at(const PinMove& move, double time, Vec3 without) {
 
 Vec3 rotation_at(const PinMove& move, double time) { return pose_at(move, time).rotation; }
 
-MovedPins::MovedPins(std::span<const PinMove> moves, const Cloth& cloth) : moves_(moves) {
+Vec3 turned_at(const PinMove& move, double time, Vec3 direction) {
+  return direction + turned_by(pose_at(move, time).rotation, direction);
+}
+
+MovedPins::MovedPins(std::span<const PinMove> moves, const Cloth& cloth)
+    : moves_(moves.begin(), moves.end()) {
   for (const PinMove& move : moves) {
     std::vector<Vec3> from = move.from;
     if (from.empty()) {
@@ -105,6 +110,18 @@ std::vector<PlacedPin> MovedPins::places_at(const Cloth& cloth, double time) con
   return placed;
 }
 
+void MovedPins::release(std::span<const std::uint32_t> particles) {
+  for (const std::uint32_t particle : particles) {
+    for (std::size_t m = 0; m < moves_.size(); ++m) {
+      auto& moved = moves_[m].particles;
+      const auto at = std::ranges::find(moved, particle);
+      if (at == moved.end()) continue;
+      from_[m].erase(from_[m].begin() + (at - moved.begin()));
+      moved.erase(at);
+    }
+  }
+}
+
 std::vector<PinMove> present_moves(std::span<const PinMove> moves, const SceneDescription& scene,
                                    double elapsed) {
   std::vector<PinMove> present(moves.begin(), moves.end());
@@ -113,6 +130,7 @@ std::vector<PinMove> present_moves(std::span<const PinMove> moves, const SceneDe
     drop_merged_times(move);
     if (!move.from.empty()) continue;
     for (const std::uint32_t pin : move.particles) move.from.push_back(scene.positions[pin]);
+    for (const std::uint32_t i : move.anchors) move.from.push_back(scene.anchors[i].point);
   }
   return present;
 }

@@ -20,11 +20,12 @@ namespace weft::tools {
 
 struct PinMove {
   std::vector<std::uint32_t> particles = {};  ///< fixed ones
+  std::vector<std::uint32_t> anchors = {};    ///< or anchors, whose normals turn with them
   std::vector<double> times = {};             ///< one at least, increasing
   std::vector<Vec3> translations = {};        ///< one per time
   std::vector<Vec3> rotations = {};           ///< empty: none; else one vector per time
   Vec3 about = {};
-  std::vector<Vec3> from = {};  ///< x of each particle; empty: their positions in the scene
+  std::vector<Vec3> from = {};  ///< x of each particle or anchor; empty: their places in the scene
 };
 
 /// Where a particle is at a time.
@@ -32,6 +33,8 @@ Vec3 place_at(const PinMove& move, double time, Vec3 without);
 
 /// The rotation vector of the motion at a time.
 Vec3 rotation_at(const PinMove& move, double time);
+/// Where a direction points at a time.
+Vec3 turned_at(const PinMove& move, double time, Vec3 direction);
 
 /// A call of Cloth::move_fixed or Cloth::place_fixed.
 struct PlacedPin {
@@ -50,9 +53,11 @@ class MovedPins {
   Result<void> send(Cloth& cloth, double time) const;
   /// Those that stand elsewhere, and where they are at `time`.
   std::vector<PlacedPin> places_at(const Cloth& cloth, double time) const;
+  /// These are no pins any more: they are not moved again.
+  void release(std::span<const std::uint32_t> particles);
 
  private:
-  std::span<const PinMove> moves_;
+  std::vector<PinMove> moves_;
   std::vector<std::vector<Vec3>> from_;  // of each move, of each particle
 };
 

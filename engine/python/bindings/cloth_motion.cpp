@@ -136,6 +136,22 @@ void add_anchors(py::module_& m, ClothClass& cloth) {
           py::arg("scale"), "Multiplies all largest distances, from the next step on.");
 }
 
+void add_seams(ClothClass& cloth) {
+  using Seams = Result<void> (Cloth::*)(std::span<const std::uint32_t>);
+  const auto with = [](Seams give) {
+    return [give](HeldCloth& c, py::object seams) {
+      const auto which = indices(seams, "seams");
+      const auto used = use(c);
+      check((c.value.*give)(which));
+    };
+  };
+  cloth
+      .def("release_seams", with(&Cloth::release_seams), py::arg("seams"),
+           "Releases seams: they hold nothing from the next step on.")
+      .def("close_seams", with(&Cloth::close_seams), py::arg("seams"),
+           "Closes seams that were released: they draw their particles together again.");
+}
+
 void add_rigid_motion(py::module_& m, ClothClass& cloth) {
   Fields<RigidMotion> motion(m, "RigidMotion", "x -> about + R (x - about) + translation.");
   motion.field("translation", &RigidMotion::translation, "m")
@@ -233,6 +249,7 @@ void add_cloth_motion(py::module_& m, ClothClass& cloth) {
   add_changes(m);
   add_pins(cloth);
   add_anchors(m, cloth);
+  add_seams(cloth);
   add_rigid_motion(m, cloth);
   add_bodies(cloth);
 }

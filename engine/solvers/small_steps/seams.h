@@ -18,8 +18,10 @@ struct SeamState {
   double speed = 0;  // m/s, at which it closes
   double left = 0;   // s, of its time
   bool is_closed = false;
+  bool is_released = false;  // by the caller: it does nothing
 
-  bool is_late() const { return !is_closed && left <= 0; }
+  bool is_open() const { return !is_closed && !is_released; }
+  bool is_late() const { return is_open() && left <= 0; }
 };
 
 class SeamThreads {
@@ -40,6 +42,7 @@ class SeamThreads {
   void draw(const Points& points, double give, bool is_first) {
     for (std::size_t i = 0; i < multiplier_.size(); ++i) {
       if (is_first) multiplier_[i] = {};
+      if (states_[i].is_released) continue;
       const std::uint32_t a = model_.seams.a[i], b = model_.seams.b[i];
       const double wa = model_.inverse_mass[a], wb = model_.inverse_mass[b];
       if (wa + wb == 0) continue;
@@ -56,7 +59,7 @@ class SeamThreads {
   template <class Points, class Closed>
   void end_substep(const Points& points, double give, double tolerance, Closed&& closed) {
     for (std::size_t i = 0; i < multiplier_.size(); ++i) {
-      if (states_[i].is_closed) continue;
+      if (!states_[i].is_open()) continue;
       states_[i].left -= h_;
       const std::uint32_t a = model_.seams.a[i], b = model_.seams.b[i];
       const kernels::Vector d = points.difference(a, b);

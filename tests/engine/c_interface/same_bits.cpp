@@ -415,6 +415,20 @@ TEST_CASE("anchors that are moved, limited and scaled") {
   step_both(b, 0.01);
 }
 
+TEST_CASE("seams that are released and closed") {
+  SceneDescription scene = scene_of("hang", 8);
+  scene.seams = {{30, 40, 0.5}, {31, 41, 0.5}};
+  Both b = both(scene, {});
+  step_both(b, 0.01);
+  const std::uint32_t seams[2] = {1, 0};
+  REQUIRE(b.cpp.release_seams(seams));
+  REQUIRE(weft_release_seams(b.c.get(), 2, seams) == WEFT_OK);
+  step_both(b, 0.01);
+  REQUIRE(b.cpp.close_seams({seams, 1}));
+  REQUIRE(weft_close_seams(b.c.get(), 1, seams) == WEFT_OK);
+  step_both(b, 0.01);
+}
+
 /// A tetrahedron that nothing joins, in wind.
 SceneDescription blown() {
   SceneDescription scene;

@@ -42,6 +42,24 @@ class Seams(unittest.TestCase):
             self.assertLessEqual(cloth.step(FRAME).max_seam_gap, 1e-4)
         self.assertAlmostEqual(cloth.velocity(0)[1], 300 / 3 * 0.5, delta=0.5)
 
+    def test_is_released_and_closes_again(self):
+        cloth = two_particles(time=0.5)
+        for _ in range(35):
+            cloth.step(FRAME)
+        cloth.write_forces([(0, 0, 0), (2, 0, 0)])
+        cloth.release_seams([0])
+        for _ in range(30):
+            self.assertEqual(cloth.step(FRAME).open_seams, 0)
+        self.assertAlmostEqual(gap(cloth), 0.5 * 0.5**2, delta=0.01)  # 2 N on 2 kg
+        cloth.write_forces([])
+        cloth.close_seams([0])
+        self.assertEqual(cloth.step(FRAME).open_seams, 1)
+        for _ in range(40):
+            cloth.step(FRAME)
+        self.assertLessEqual(gap(cloth), 1e-4)
+        with self.assertRaisesRegex(ValueError, "no such seam"):
+            cloth.release_seams([1])
+
     def test_pulls_no_harder_than_it_may(self):
         cloth = two_particles(time=0.1, max_force=0.5, fixed=[0])  # of itself at 6 m/s
         work = 0

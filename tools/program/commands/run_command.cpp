@@ -126,6 +126,8 @@ Result<Prepared> prepare(const RunOptions& options) {
   }
   plan.value().moves = source.value().moves;
   plan.value().bodies = source.value().bodies;
+  plan.value().events = source.value().events;
+  plan.value().velocities = source.value().description.velocities;
   plan.value().surface = source.value().description.surface;
   plan.value().touches_itself = source.value().description.self_contact.on;
   plan.value().scene = source.value().title();

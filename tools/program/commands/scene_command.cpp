@@ -25,9 +25,10 @@ Result<void> write_scene(const WriteOptions& options) {
   auto source = load_scene(options.scene);
   if (!source) return Error{source.error()};
   if (auto model = model_of(source.value()); !model) return Error{model.error()};
-  const auto written = write_file(
-      options.out, scene_text(source.value().description, source.value().moves,
-                              particle_faces(source.value().mesh), source.value().bodies));
+  const auto written =
+      write_file(options.out, scene_text(source.value().description, source.value().moves,
+                                         particle_faces(source.value().mesh), source.value().bodies,
+                                         source.value().events));
   if (!written) return Error{fmt::format("--out: {}", written.error())};
   return {};
 }

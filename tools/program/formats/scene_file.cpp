@@ -13,6 +13,7 @@
 #include "tools/program/files/json_reading.h"
 #include "tools/program/files/text_file.h"
 #include "tools/program/formats/scene_bodies.h"
+#include "tools/program/formats/scene_events.h"
 #include "tools/program/formats/scene_moves.h"
 #include "tools/program/formats/scene_parts.h"
 #include "tools/scenes/mesh.h"
@@ -75,7 +76,7 @@ void read_key(const std::string& key, const Json& json, SceneDescription& scene)
   } else if (key == "radii") {
     scene.radii = read_array(json, key, read_number);
   } else if (key != "total_mass" && key != "moves" && key != "faces" && key != "bodies" &&
-             !read_part(key, json, scene)) {
+             key != "events" && !read_part(key, json, scene)) {
     throw Refused{fmt::format("unknown key {}", in_quotes(key))};
   }
 }
@@ -94,6 +95,7 @@ SceneFile read_scene(const Json& json, const std::string& folder) {
   measure_rest_lengths(scene);
   SceneFile file;
   if (json.contains("moves")) file.moves = read_moves(json["moves"], scene);
+  if (json.contains("events")) file.events = read_events(json["events"], scene);
   if (json.contains("faces")) file.faces = read_faces(json["faces"], scene.positions.size());
   if (!json.contains("surface")) scene.surface = triangles_of(file.faces);
   if (json.contains("bodies")) file.bodies = read_bodies(json["bodies"], folder);
@@ -102,9 +104,10 @@ SceneFile read_scene(const Json& json, const std::string& folder) {
 }
 
 /// Of two values for one key the parser would drop one in silence. Only keys of the scene itself,
-/// of what it has and of what is in its arrays are looked at: other objects are refused anyway.
+/// of what it has and of what is in its arrays, and theirs, are looked at: other objects are
+/// refused anyway.
 Json parse_once_each(std::string_view text) {
-  constexpr std::size_t kDepths = 4;
+  constexpr std::size_t kDepths = 6;
   std::array<std::set<std::string>, kDepths> seen;
   return Json::parse(text, [&](int depth, Json::parse_event_t event, const Json& parsed) {
     const auto at = static_cast<std::size_t>(depth);
@@ -147,7 +150,8 @@ Result<SceneFile> read_scene_file(const std::string& path) {
 }
 
 std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>& moves,
-                       const Faces& faces, const std::vector<SceneBody>& bodies) {
+                       const Faces& faces, const std::vector<SceneBody>& bodies,
+                       const std::vector<SceneEvent>& events) {
   std::string text;
   add_rows(text, "positions", scene.positions, vector_row);
   add_rows(text, "velocities", scene.velocities, vector_row);
@@ -160,6 +164,7 @@ std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>
   add_numbers(text, "radii", scene.radii);
   add_rows(text, "bodies", bodies, body_row);
   add_rows(text, "moves", moves, move_row);
+  add_rows(text, "events", events, event_row);
   add_rows(text, "faces", faces, [](const auto& face) { return Json(face).dump(); });
   return "{" + text.substr(1) + "\n}\n";  // without the first comma
 }

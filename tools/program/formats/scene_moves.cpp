@@ -24,6 +24,8 @@ std::vector<double> read_times(const Json& json, const std::string& place) {
 void read_key(const std::string& key, const Json& json, const std::string& place, PinMove& move) {
   if (key == "particles") {
     move.particles = read_array(json, place, read_index);
+  } else if (key == "anchors") {
+    move.anchors = read_array(json, place, read_index);
   } else if (key == "times") {
     move.times = read_times(json, place);
   } else if (key == "translations") {
@@ -45,13 +47,15 @@ void check_count(const Json& json, const std::string& place, std::string_view ke
 }
 
 PinMove read_pin_move(const Json& json, const std::string& place) {
-  check_keys(json, place, {"particles", "times", "translations", "rotations", "about", "from"},
-             {"particles", "times", "translations"});
+  const bool of_anchors = json.is_object() && json.contains("anchors");
+  const char* who = of_anchors ? "anchors" : "particles";
+  check_keys(json, place, {who, "times", "translations", "rotations", "about", "from"},
+             {who, "times", "translations"});
   PinMove move;
   for (const auto& [key, value] : json.items()) read_key(key, value, within(place, key), move);
   check_count(json, place, "translations", "times");
   check_count(json, place, "rotations", "times");
-  check_count(json, place, "from", "particles");
+  check_count(json, place, "from", who);
   return move;
 }
 
@@ -75,6 +79,13 @@ void take(std::uint32_t particle, const std::string& place, std::vector<Pin>& pi
   pins[particle] = Pin::moved;
 }
 
+void take_anchor(std::uint32_t anchor, const std::string& place, std::vector<bool>& moved) {
+  if (anchor >= moved.size())
+    throw Refused{fmt::format("{}: there is no anchor {}", place, anchor)};
+  if (moved[anchor]) throw Refused{fmt::format("{}: anchor {} is moved twice", place, anchor)};
+  moved[anchor] = true;
+}
+
 Json vectors_json(const std::vector<Vec3>& vectors) {
   Json rows = Json::array();
   for (const Vec3& v : vectors) rows.push_back({v.x, v.y, v.z});
@@ -86,17 +97,21 @@ Json vectors_json(const std::vector<Vec3>& vectors) {
 std::vector<PinMove> read_moves(const Json& json, const SceneDescription& scene) {
   std::vector<PinMove> moves = read_array(json, "moves", read_pin_move);
   std::vector<Pin> pins = pins_of(scene);
+  std::vector<bool> anchors(scene.anchors.size());
   for (std::size_t m = 0; m < moves.size(); ++m) {
     const std::vector<std::uint32_t>& particles = moves[m].particles;
     for (std::size_t k = 0; k < particles.size(); ++k) {
       take(particles[k], fmt::format("moves[{}].particles[{}]", m, k), pins);
     }
+    for (std::size_t k = 0; k < moves[m].anchors.size(); ++k)
+      take_anchor(moves[m].anchors[k], fmt::format("moves[{}].anchors[{}]", m, k), anchors);
   }
   return moves;
 }
 
 std::string move_row(const PinMove& move) {
-  Json row{{"particles", move.particles},
+  const bool of_anchors = !move.anchors.empty();
+  Json row{{of_anchors ? "anchors" : "particles", of_anchors ? move.anchors : move.particles},
            {"times", move.times},
            {"translations", vectors_json(move.translations)}};
   if (!move.rotations.empty()) row["rotations"] = vectors_json(move.rotations);

@@ -145,10 +145,10 @@ Result<SceneSource> load_scene_file(const SceneOptions& options) {
   if (auto checked = check_options(options, {}); !checked) return Error{checked.error()};
   auto read = read_scene_file(options.scene);
   if (!read) return Error{read.error()};
-  auto& [description, moves, faces, bodies] = read.value();
+  auto& [description, moves, faces, bodies, events] = read.value();
   Mesh mesh = face_mesh(description, std::move(faces));
-  return SceneSource{options.scene, std::move(description), std::move(mesh), std::move(moves),
-                     std::move(bodies)};
+  return SceneSource{options.scene,    std::move(description), std::move(mesh),
+                     std::move(moves), std::move(bodies),      std::move(events)};
 }
 
 /// Whether edges are rigid and enclose triangles, more of them than quads.

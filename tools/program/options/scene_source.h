@@ -11,6 +11,7 @@
 #include "tools/program/options/material_options.h"
 #include "tools/program/options/world_options.h"
 #include "tools/program/terminal/command_line.h"
+#include "tools/scenes/events.h"
 #include "tools/scenes/mesh.h"
 #include "tools/scenes/pin_moves.h"
 #include "tools/scenes/scene_body.h"
@@ -51,6 +52,7 @@ struct SceneSource {
   Mesh mesh;
   std::vector<PinMove> moves = {};
   std::vector<SceneBody> bodies = {};
+  std::vector<SceneEvent> events = {};
   std::optional<MeshCounts> counts = {};  ///< of a mesh that was read
   std::vector<std::string> notes = {};    ///< for whoever runs it, a line each
   double Vec3::*up = &Vec3::y;            ///< what heights are measured along

@@ -72,17 +72,19 @@ Result<void> Outputs::add_shown(const std::string& path, bool is_page) {
 Result<void> Outputs::add_series(const NumberedName& name, Format format) {
   series_.push_back({name, format});
   const SceneDescription& scene = source_->description;
-  return write_file(name.with(0), format == Format::mesh
-                                      ? obj_text(source_->mesh, scene, scene.positions)
-                                      : scene_text(scene, source_->moves,
-                                                   particle_faces(source_->mesh), source_->bodies));
+  return write_file(name.with(0),
+                    format == Format::mesh
+                        ? obj_text(source_->mesh, scene, scene.positions)
+                        : scene_text(scene, source_->moves, particle_faces(source_->mesh),
+                                     source_->bodies, source_->events));
 }
 
 std::string Outputs::text(Format format, const Cloth& cloth, double elapsed) const {
   const SceneDescription& scene = source_->description;
   if (format == Format::mesh) return obj_text(source_->mesh, scene, particle_positions(cloth));
   return scene_text(present_scene(scene, cloth), present_moves(source_->moves, scene, elapsed),
-                    particle_faces(source_->mesh), present_bodies(source_->bodies, elapsed));
+                    particle_faces(source_->mesh), present_bodies(source_->bodies, elapsed),
+                    present_events(source_->events, elapsed));
 }
 
 void Outputs::add_frame(const Cloth& cloth, const StepReport& report, int frame, double elapsed) {

@@ -16,6 +16,7 @@
 #include "tools/program/run/step_total.h"
 #include "tools/program/run/warm_up.h"
 #include "tools/program/text/wording.h"
+#include "tools/scenes/anchor_moves.h"
 #include "tools/scenes/body_moves.h"
 #include "tools/scenes/mesh.h"
 
@@ -141,19 +142,40 @@ void finish(RunSummary& summary, const Errors& errors, const Cloth& cloth) {
   summary.bytes = cloth.bytes() + summary.model.bytes;
 }
 
+/// The scene begins with some events: they move no particle.
+Result<void> begin_scene(const RunPlan& plan, const MovedAnchors& anchors, Events& events,
+                         MovedPins& pins, Cloth& cloth) {
+  const std::vector<Vec3> positions = particle_positions(cloth);
+  if (auto happened = events.happen(0, cloth, pins); !happened) return happened;
+  if (auto sent = anchors.send(cloth, 0); !sent) return sent;
+  if (events.count() > 0 || anchors.any()) {
+    if (auto put = cloth.write_positions(positions); !put) return put;
+    if (!plan.velocities.empty()) {
+      if (auto thrown = cloth.write_velocities(plan.velocities); !thrown) return thrown;
+    }
+  }
+  return pins.place(cloth);
+}
+
 Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Settings& settings,
                             const RunPlan& plan, const FrameCallback& on_frame) {
   auto created = Cloth::create(model, settings);
   if (!created) return Error{created.error()};
   Cloth& cloth = created.value();
 
-  const MovedPins pins(plan.moves, cloth);
-  if (auto placed = pins.place(cloth); !placed) return Error{placed.error()};
+  MovedPins pins(plan.moves, cloth);
+  const MovedAnchors anchors(plan.moves, cloth);
+  Events events(plan.events);
+  if (auto begun = begin_scene(plan, anchors, events, pins, cloth); !begun)
+    return Error{begun.error()};
   auto bodies = MovedBodies::add(plan.bodies, cloth);
   if (!bodies) return Error{bodies.error()};
   RunSummary summary;
   Errors errors;
   if (plan.resume) {  // whose bodies are those that were added, where they had come to
+    const double last_begin = (plan.resume->frame - 1) * plan.dt;
+    if (auto happened = events.happen(last_begin, cloth, pins); !happened)  // for its model
+      return Error{happened.error()};
     if (auto loaded = cloth.load_state(plan.resume->cloth); !loaded) {
       return Error{fmt::format(
           "--resume: {}; a run goes on with the mesh, the material and the wind that it began with",
@@ -169,9 +191,12 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
   summary.lowest = std::numeric_limits<double>::infinity();
   while (summary.last_frame() < plan.steps && summary.cpu_seconds < plan.seconds_limit &&
          committed(summary.total.status) && !summary.stopped) {
+    const double begin_of_frame = summary.last_frame() * plan.dt;
     const double end_of_frame = (summary.last_frame() + 1) * plan.dt;
+    if (auto done = events.happen(begin_of_frame, cloth, pins); !done) return Error{done.error()};
     const FrameCalls calls = calls_at(pins, bodies.value(), cloth, end_of_frame);
     if (auto done = apply(calls, cloth); !done) return Error{done.error()};
+    if (auto sent = anchors.send(cloth, end_of_frame); !sent) return Error{sent.error()};
     const double cpu_start = cpu_seconds();
     const auto start = Clock::now();
     const auto report = cloth.step(plan.dt);

@@ -17,6 +17,7 @@
 #include "tools/program/measure/crossings.h"
 #include "tools/program/measure/fabric_measure.h"
 #include "tools/program/run/run_state.h"
+#include "tools/scenes/events.h"
 #include "tools/scenes/pin_moves.h"
 #include "tools/scenes/scene_body.h"
 
@@ -33,10 +34,13 @@ struct RunPlan {
   double seconds_limit = std::numeric_limits<double>::infinity();
   /// Asked after every frame, before its callback: true ends the run there.
   std::function<bool()> stop = {};
-  /// Of fixed particles, each in one move at most. Before each frame they are sent to where they
-  /// are at its end.
+  /// Of fixed particles and anchors, each in one move at most. Before each frame they are sent to
+  /// where they are at its end.
   std::vector<PinMove> moves = {};
   std::vector<SceneBody> bodies = {};
+  std::vector<SceneEvent> events = {};
+  /// Of the scene, for particles that an event releases at its start; empty: all at rest.
+  std::vector<Vec3> velocities = {};
   /// After every frame, of `surface` (SceneDescription::surface) and bodies that are meshes, and of
   /// the surface with itself where that is asked for.
   bool check_intersections = false;

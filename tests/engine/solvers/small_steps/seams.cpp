@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -132,6 +133,92 @@ TEST_CASE("a clone, a copied state and a change go on with seams as they are") {
   CHECK(clone.state_hash() == cloth.state_hash());
   CHECK(changed.state_hash() == cloth.state_hash());
   CHECK(gap(cloth) <= 1e-4);
+}
+
+/// A particle of 2 kg that is sewn to a pin, and hangs there.
+SceneDescription hanging_by_a_seam() {
+  SceneDescription scene;
+  scene.positions = {{0, 0, 0}, {0, 0, 0}};
+  scene.masses = {1, 2};
+  scene.fixed = {0};
+  scene.seams = {{0, 1, 0.5}};
+  return scene;
+}
+
+TEST_CASE("what a seam that is released held falls freely, and is caught where it closes again") {
+  for (const Backend backend : kBackends) {
+    for (const int rate : {30, 60, 240}) {
+      CAPTURE(rate);
+      const double frame = 1. / rate;
+      Cloth cloth = cloth_of(hanging_by_a_seam(), small_steps(backend));
+      run(cloth, frame, rate / 5);
+      REQUIRE(std::abs(cloth.position(1).y) <= 1e-4);
+      REQUIRE(cloth.release_seams(std::array{0u}));
+      for (int k = 1; k <= rate / 2; ++k) {
+        const StepReport report = step(cloth, frame);
+        CHECK(report.status == Status::converged);
+        CHECK(report.open_seams == 0);
+        CHECK(report.max_seam_gap == 0);
+        CHECK(report.seam_work == 0);
+      }
+      const double t = (rate / 2) * frame;
+      CHECK(cloth.position(1).y == doctest::Approx(-5 * t * t).epsilon(0.01));
+      CHECK(cloth.velocity(1).y == doctest::Approx(-10 * t).epsilon(0.01));
+      REQUIRE(cloth.close_seams(std::array{0u}));
+      CHECK(step(cloth, frame).open_seams == 1);
+      run(cloth, frame, rate);
+      const StepReport report = step(cloth, frame);
+      CHECK(report.open_seams == 0);
+      CHECK(report.max_seam_gap <= 1e-4);
+      CHECK(std::abs(cloth.position(1).y) <= 1e-4);
+    }
+  }
+}
+
+TEST_CASE("an open seam that is released pulls no more, and is neither late nor held apart") {
+  for (const Backend backend : kBackends) {
+    Cloth cloth = cloth_of(two_particles({0, 1, 0.5}), small_steps(backend));
+    run(cloth, kFrame, 10);
+    REQUIRE(cloth.release_seams(std::array{0u}));
+    const double from = gap(cloth);
+    for (int frame = 0; frame < 5; ++frame) CHECK(step(cloth, kFrame).status == Status::converged);
+    CHECK(gap(cloth) == doctest::Approx(from - 5 * kFrame * 1.2).epsilon(0.01));  // at its speed
+    SceneDescription apart = two_particles({0, 1, 0.1});
+    apart.fixed = {0, 1};
+    Cloth held = cloth_of(apart, small_steps(backend));
+    for (int frame = 0; frame < 10; ++frame) run(held, kFrame, 1);
+    CHECK(step(held, kFrame).status == Status::infeasible);
+    REQUIRE(held.release_seams(std::array{0u}));
+    CHECK(step(held, kFrame).held_apart == 0);
+    CHECK(step(held, kFrame).status == Status::converged);
+  }
+}
+
+TEST_CASE("released seams stay so in a clone, a change, and a state that is loaded or placed") {
+  Cloth cloth = cloth_of(hanging_by_a_seam(), small_steps(Backend::simd));
+  run(cloth, kFrame, 5);
+  REQUIRE(cloth.release_seams(std::array{0u}));
+  Cloth clone = cloth.clone(), changed = cloth.clone(), placed = cloth.clone();
+  Cloth loaded = cloth_of(hanging_by_a_seam(), small_steps(Backend::simd));
+  REQUIRE(loaded.load_state(cloth.save_state()));
+  REQUIRE(changed.change({.damping = Damping{}}));
+  std::vector<Vec3> places(2);
+  REQUIRE(placed.read_positions(places));
+  REQUIRE(placed.write_positions(places));
+  for (Cloth* each : {&cloth, &clone, &changed, &loaded, &placed}) run(*each, kFrame, 30);
+  CHECK(cloth.position(1).y < -1);
+  for (Cloth* each : {&clone, &changed, &loaded}) CHECK(each->state_hash() == cloth.state_hash());
+  CHECK(placed.position(1).y == doctest::Approx(cloth.position(1).y).epsilon(0.01));
+}
+
+TEST_CASE("seams that are not there are neither released nor closed") {
+  Cloth cloth = cloth_of(hanging_by_a_seam(), small_steps(Backend::simd));
+  run(cloth, kFrame, 5);
+  CHECK(cloth.release_seams(std::array{0u, 1u}).error() ==
+        "seams[1]: no such seam, the scene has 1 (1)");
+  CHECK(cloth.close_seams(std::array{7u}).error() == "seams[0]: no such seam, the scene has 1 (7)");
+  run(cloth, kFrame, 5);
+  CHECK(std::abs(cloth.position(1).y) <= 1e-4);
 }
 
 TEST_CASE("seams that make no sense, and solvers that know none, are refused") {
