@@ -1,6 +1,7 @@
 /// Pins, anchors, frames and changes of a cloth in C.
 #include "engine/c_interface/arrays.h"
 #include "engine/c_interface/handles.h"
+#include "engine/c_interface/scene_arrays.h"
 #include "engine/c_interface/structs.h"
 
 namespace weft::c_interface {
@@ -99,6 +100,15 @@ weft_result weft_change(weft_cloth* cloth, const weft_changes* changes) {
     const auto read = read_changes(changes);
     if (!read) return weft::Error{read.error()};
     return cloth->cloth.change(read.value());
+  });
+}
+
+weft_result weft_set_rest_shape(weft_cloth* cloth, const weft_scene* scene, double scale) {
+  return call([&]() -> weft::Result<void> {
+    if (auto r = given({{"cloth", cloth}}); !r) return r;
+    const auto description = read_scene(scene);
+    if (!description) return weft::Error{description.error()};
+    return cloth->cloth.set_rest_shape(description.value(), scale);
   });
 }
 

@@ -141,6 +141,16 @@ Result<void> Cloth::change(const Changes& changes) {
   return {};
 }
 
+Result<void> Cloth::set_rest_shape(const SceneDescription& scene, double scale) {
+  const Model& model = *impl_->state.model;
+  auto description = with_rest_shape(model, scene, scale);
+  if (!description) return Error{description.error()};
+  auto changed = impl_->going_on(rebuilt(model, description.value()));
+  if (!changed) return Error{changed.error()};
+  impl_ = std::move(changed).value();
+  return {};
+}
+
 Result<StepReport> Cloth::step(double dt, const JobSystem& jobs) {
   if (auto valid = validate_time_step(dt); !valid) return Error{valid.error()};
   if (auto valid = validate(jobs); !valid) return Error{valid.error()};

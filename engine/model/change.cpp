@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/model/validate.h"
 #include "engine/public_vectors.h"
+#include "engine/validation.h"
 
 namespace weft {
 namespace {
@@ -165,6 +167,69 @@ std::shared_ptr<const Model> with_anchor_distances(const Model& model,
   SceneDescription description = description_of(model);
   for (std::size_t i = 0; i < limits.size(); ++i)
     description.anchors[i].max_distance = limits[i].max_distance;
+  return std::make_shared<Model>(description, &model);
+}
+
+namespace {
+
+template <class Element>
+Result<void> validate_same_particles(std::string_view name, const std::vector<Element>& own,
+                                     const std::vector<Element>& given) {
+  if (auto r = validate_size(name, given.size(), own.size()); !r) return r;
+  Result<void> result;
+  for (std::size_t i = 0; i < own.size() && result; ++i) {
+    for_each_element_field<Element>([&](const auto& field) {
+      const bool tells =
+          std::string_view(field.name).starts_with("particle") || field.values == Values::particle;
+      if (!tells || own[i].*field.member == given[i].*field.member) return;
+      result = refuse(element(name, i) + "." + field.name, "is not as the cloth has it",
+                      "element " + std::to_string(i));
+    });
+  }
+  return result;
+}
+
+void take_rest(const Constraint& from, double scale, Constraint& to) {
+  to.rest_length = scale * from.rest_length;
+  to.compliance = from.compliance;
+}
+void take_rest(const MembraneElement& from, double scale, MembraneElement& to) {
+  to.rest = from.rest;
+  for (auto& [u, v] : to.rest) u *= scale, v *= scale;
+}
+void take_rest(const BendingElement& from, double scale, BendingElement& to) {
+  to.weights = from.weights;
+  for (double& weight : to.weights) weight /= scale;
+  to.rest = from.rest;
+  to.fold = from.fold;
+  to.compliance = from.compliance;
+}
+void take_rest(const Tether& from, double scale, Tether& to) { to.length = scale * from.length; }
+
+}  // namespace
+
+Result<SceneDescription> with_rest_shape(const Model& model, const SceneDescription& scene,
+                                         double scale) {
+  if (auto r = validate_positive("scale", scale); !r) return Error{r.error()};
+  SceneDescription description = description_of(model);
+  Result<void> result;
+  const auto take = [&](std::string_view name, auto list) {
+    if (!result) return;
+    result = validate_same_particles(name, description.*list, scene.*list);
+    if (!result) return;
+    for (std::size_t i = 0; i < (scene.*list).size(); ++i)
+      take_rest((scene.*list)[i], scale, (description.*list)[i]);
+  };
+  take("constraints", &SceneDescription::constraints);
+  take("membrane", &SceneDescription::membrane);
+  take("bending", &SceneDescription::bending);
+  take("tethers", &SceneDescription::tethers);
+  if (result) result = validate_elements(description);
+  if (!result) return Error{result.error()};
+  return description;
+}
+
+std::shared_ptr<const Model> rebuilt(const Model& model, const SceneDescription& description) {
   return std::make_shared<Model>(description, &model);
 }
 

@@ -23,6 +23,14 @@ SceneDescription description_of(const Model& model);
 /// The changes must be valid for the model.
 std::shared_ptr<const Model> changed(const Model& model, const Changes& changes);
 
+/// The description of the model, with the shape at rest of `scene` times `scale`
+/// (Cloth::set_rest_shape). An error if their elements are not the same, or a value is none.
+Result<SceneDescription> with_rest_shape(const Model& model, const SceneDescription& scene,
+                                         double scale);
+
+/// The changed description must be valid for the model.
+std::shared_ptr<const Model> rebuilt(const Model& model, const SceneDescription& description);
+
 /// With other largest distances, one for each anchor.
 std::shared_ptr<const Model> with_anchor_distances(const Model& model,
                                                    std::span<const AnchorLimit> limits);

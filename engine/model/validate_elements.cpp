@@ -172,7 +172,9 @@ Rule rule_of_list(const SceneDescription& d, const std::vector<Tether>& tethers)
 Rule validate_value(Values values, const FieldName& field, double value, std::size_t) {
   return validate_number(values, field, value);
 }
-Rule validate_value(Values, const FieldName& field, std::uint32_t particle, std::size_t count) {
+Rule validate_value(Values values, const FieldName& field, std::uint32_t particle,
+                    std::size_t count) {
+  if (values == Values::ruled) return {};
   return validate_particle(field, particle, count);
 }
 Rule validate_value(Values, const FieldName& field, ConstraintKind kind, std::size_t) {

@@ -469,6 +469,21 @@ class WEFT_API Cloth {
   /// be invalid after this call, and after copy_state.
   Result<void> change(const Changes& changes);
 
+  /// Gives the cloth another shape at rest, for cloth that shrinks, grows or is inflated, and for
+  /// garments on bodies that grow. It takes from `scene`, times `scale`: rest lengths of
+  /// constraints, corners of triangles of fabric, lengths of tethers, and of bending elements the
+  /// weights (over `scale`, so angles stay), rest and fold; and compliances of constraints and
+  /// bending elements. Its elements must be those of this cloth, with the same particles; all else
+  /// in it is ignored. cloth_from_mesh makes such a scene of the same mesh with other
+  /// rest_positions. Strain, areas and distances of contacts are then those of the new shape.
+  /// Stiffnesses of triangles, masses, positions and velocities stay.
+  ///
+  /// The shape is given as a whole, so a scale does not add up over calls. It is part of the model,
+  /// as what change() changes is (load_state), and takes about as long as that. Where a length
+  /// changes by more than the tolerance, the cloth is projected when the next step begins
+  /// (write_positions). To let it grow, give it a slightly larger scale before each step.
+  Result<void> set_rest_shape(const SceneDescription& scene, double scale = 1);
+
   /// Recomputed from the positions by this thread alone. The report of the last step has its strain
   /// already, which may differ in the last bits.
   Strain strain() const;

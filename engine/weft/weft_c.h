@@ -389,6 +389,9 @@ WEFT_API weft_result weft_carry(weft_cloth* cloth, const double translation[3],
 WEFT_API weft_result weft_teleport(weft_cloth* cloth, const double translation[3],
                                    const double rotation[3], const double about[3]);
 
+/* The constraints, membrane, bending and tethers of the scene count, times scale. */
+WEFT_API weft_result weft_set_rest_shape(weft_cloth* cloth, const weft_scene* scene, double scale);
+
 /* Changes. Particles, constraints and elements by their numbers in the description. */
 typedef struct weft_changes {
   size_t size;

@@ -16,7 +16,8 @@ using tools::SceneFile;
 constexpr const char* kNoFolder = "/nowhere";
 
 std::string scene_text_of(const SceneFile& file) {
-  return tools::scene_text(file.description, file.moves, file.faces, file.bodies, file.events);
+  return tools::scene_text(file.description, file.moves, file.faces, file.bodies, file.events,
+                           file.rest_scale);
 }
 
 std::vector<std::byte> bits_of(const SceneDescription& scene) {
@@ -40,16 +41,20 @@ void run(const SceneFile& file, Cloth& cloth) {
   tools::MovedPins pins(file.moves, cloth);
   const tools::MovedAnchors anchors(file.moves, cloth);
   tools::Events events(file.events);
+  tools::GrowingRest rest(file.rest_scale, cloth);
   for (const auto& done :
-       {pins.place(cloth), events.happen(0.1, cloth, pins), pins.send(cloth, 0.1),
-        anchors.send(cloth, 0.1), bodies.value().send(cloth, 0.1)}) {
+       {rest.grow(cloth, 0.1), pins.place(cloth), events.happen(0.1, cloth, pins),
+        pins.send(cloth, 0.1), anchors.send(cloth, 0.1), bodies.value().send(cloth, 0.1)}) {
     if (!done) check_message(done.error());
   }
   step_twice(cloth);
   const SceneDescription present = tools::present_scene(file.description, cloth);
-  const SceneFile later{present, tools::present_moves(file.moves, file.description, 0.1),
-                        file.faces, tools::present_bodies(file.bodies, 0.1),
-                        tools::present_events(file.events, 0.1)};
+  const SceneFile later{present,
+                        tools::present_moves(file.moves, file.description, 0.1),
+                        file.faces,
+                        tools::present_bodies(file.bodies, 0.1),
+                        tools::present_events(file.events, 0.1),
+                        tools::present_scale(file.rest_scale, 0.1)};
   const auto read = tools::parse_scene(scene_text_of(later), kNoFolder);
   check(static_cast<bool>(read), read ? "" : read.error());
 }

@@ -91,7 +91,18 @@ void add_pins(ClothClass& cloth) {
             const py::gil_scoped_release release;
             check(c.value.change(copy));
           },
-          py::arg("changes"), "Changes the description of a moving cloth; on an error, nothing.");
+          py::arg("changes"), "Changes the description of a moving cloth; on an error, nothing.")
+      .def(
+          "set_rest_shape",
+          [](HeldCloth& c, const SceneDescription& scene, const Given<double>& given) {
+            const double scale = taken(given, "scale");
+            const auto used = use(c);
+            const SceneDescription copy = scene;
+            const py::gil_scoped_release release;
+            check(c.value.set_rest_shape(copy, scale));
+          },
+          py::arg("scene"), py::arg("scale") = 1.0,
+          "Gives the cloth the shape at rest of the scene's elements, times scale.");
 }
 
 void add_anchors(py::module_& m, ClothClass& cloth) {

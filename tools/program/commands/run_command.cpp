@@ -127,6 +127,7 @@ Result<Prepared> prepare(const RunOptions& options) {
   plan.value().moves = source.value().moves;
   plan.value().bodies = source.value().bodies;
   plan.value().events = source.value().events;
+  plan.value().rest_scale = source.value().rest_scale;
   plan.value().velocities = source.value().description.velocities;
   plan.value().surface = source.value().description.surface;
   plan.value().touches_itself = source.value().description.self_contact.on;

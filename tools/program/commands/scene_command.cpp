@@ -28,7 +28,7 @@ Result<void> write_scene(const WriteOptions& options) {
   const auto written =
       write_file(options.out, scene_text(source.value().description, source.value().moves,
                                          particle_faces(source.value().mesh), source.value().bodies,
-                                         source.value().events));
+                                         source.value().events, source.value().rest_scale));
   if (!written) return Error{fmt::format("--out: {}", written.error())};
   return {};
 }

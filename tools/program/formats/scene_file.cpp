@@ -76,7 +76,7 @@ void read_key(const std::string& key, const Json& json, SceneDescription& scene)
   } else if (key == "radii") {
     scene.radii = read_array(json, key, read_number);
   } else if (key != "total_mass" && key != "moves" && key != "faces" && key != "bodies" &&
-             key != "events" && !read_part(key, json, scene)) {
+             key != "events" && key != "rest_scale" && !read_part(key, json, scene)) {
     throw Refused{fmt::format("unknown key {}", in_quotes(key))};
   }
 }
@@ -95,6 +95,7 @@ SceneFile read_scene(const Json& json, const std::string& folder) {
   measure_rest_lengths(scene);
   SceneFile file;
   if (json.contains("moves")) file.moves = read_moves(json["moves"], scene);
+  if (json.contains("rest_scale")) file.rest_scale = read_rest_scale(json["rest_scale"]);
   if (json.contains("events")) file.events = read_events(json["events"], scene);
   if (json.contains("faces")) file.faces = read_faces(json["faces"], scene.positions.size());
   if (!json.contains("surface")) scene.surface = triangles_of(file.faces);
@@ -151,7 +152,7 @@ Result<SceneFile> read_scene_file(const std::string& path) {
 
 std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>& moves,
                        const Faces& faces, const std::vector<SceneBody>& bodies,
-                       const std::vector<SceneEvent>& events) {
+                       const std::vector<SceneEvent>& events, const RestScale& rest_scale) {
   std::string text;
   add_rows(text, "positions", scene.positions, vector_row);
   add_rows(text, "velocities", scene.velocities, vector_row);
@@ -165,6 +166,8 @@ std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>
   add_rows(text, "bodies", bodies, body_row);
   add_rows(text, "moves", moves, move_row);
   add_rows(text, "events", events, event_row);
+  if (!rest_scale.times.empty())
+    text += fmt::format(",\n\"rest_scale\": {}", rest_scale_text(rest_scale));
   add_rows(text, "faces", faces, [](const auto& face) { return Json(face).dump(); });
   return "{" + text.substr(1) + "\n}\n";  // without the first comma
 }

@@ -14,6 +14,7 @@
 
 #include "tools/scenes/events.h"
 #include "tools/scenes/pin_moves.h"
+#include "tools/scenes/rest_scale.h"
 #include "tools/scenes/scene_body.h"
 
 namespace weft::tools {
@@ -27,6 +28,7 @@ struct SceneFile {
   Faces faces;
   std::vector<SceneBody> bodies;
   std::vector<SceneEvent> events;
+  RestScale rest_scale;
 };
 
 /// Files that the scene names are relative to `folder`.
@@ -36,7 +38,8 @@ Result<SceneFile> read_scene_file(const std::string& path);
 /// The file's text. One row of the arrays per line, so that files can be read and compared.
 std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>& moves = {},
                        const Faces& faces = {}, const std::vector<SceneBody>& bodies = {},
-                       const std::vector<SceneEvent>& events = {});
+                       const std::vector<SceneEvent>& events = {},
+                       const RestScale& rest_scale = {});
 
 /// The scene with the cloth's present positions and velocities, to be continued from there. Write
 /// it with present_moves() and present_events(): their times begin anew, "from" gives the places of

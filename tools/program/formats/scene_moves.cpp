@@ -120,4 +120,21 @@ std::string move_row(const PinMove& move) {
   return row.dump();
 }
 
+RestScale read_rest_scale(const Json& json) {
+  const std::string place = "rest_scale";
+  check_keys(json, place, {"times", "scales"}, {"times", "scales"});
+  check_count(json, place, "scales", "times");
+  RestScale scale{read_times(json["times"], within(place, "times")),
+                  read_array(json["scales"], within(place, "scales"), read_number)};
+  for (std::size_t k = 0; k < scale.scales.size(); ++k) {
+    if (scale.scales[k] > 0) continue;
+    refuse(fmt::format("{}.scales[{}]", place, k), "a scale above 0", json["scales"][k]);
+  }
+  return scale;
+}
+
+std::string rest_scale_text(const RestScale& scale) {
+  return Json{{"times", scale.times}, {"scales", scale.scales}}.dump();
+}
+
 }  // namespace weft::tools

@@ -145,10 +145,11 @@ Result<SceneSource> load_scene_file(const SceneOptions& options) {
   if (auto checked = check_options(options, {}); !checked) return Error{checked.error()};
   auto read = read_scene_file(options.scene);
   if (!read) return Error{read.error()};
-  auto& [description, moves, faces, bodies, events] = read.value();
+  auto& [description, moves, faces, bodies, events, rest_scale] = read.value();
   Mesh mesh = face_mesh(description, std::move(faces));
-  return SceneSource{options.scene,    std::move(description), std::move(mesh),
-                     std::move(moves), std::move(bodies),      std::move(events)};
+  return SceneSource{options.scene,        std::move(description), std::move(mesh),
+                     std::move(moves),     std::move(bodies),      std::move(events),
+                     std::move(rest_scale)};
 }
 
 /// Whether edges are rigid and enclose triangles, more of them than quads.

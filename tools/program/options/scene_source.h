@@ -14,6 +14,7 @@
 #include "tools/scenes/events.h"
 #include "tools/scenes/mesh.h"
 #include "tools/scenes/pin_moves.h"
+#include "tools/scenes/rest_scale.h"
 #include "tools/scenes/scene_body.h"
 
 namespace weft::tools {
@@ -53,6 +54,7 @@ struct SceneSource {
   std::vector<PinMove> moves = {};
   std::vector<SceneBody> bodies = {};
   std::vector<SceneEvent> events = {};
+  RestScale rest_scale = {};
   std::optional<MeshCounts> counts = {};  ///< of a mesh that was read
   std::vector<std::string> notes = {};    ///< for whoever runs it, a line each
   double Vec3::*up = &Vec3::y;            ///< what heights are measured along

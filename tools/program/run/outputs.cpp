@@ -76,7 +76,7 @@ Result<void> Outputs::add_series(const NumberedName& name, Format format) {
                     format == Format::mesh
                         ? obj_text(source_->mesh, scene, scene.positions)
                         : scene_text(scene, source_->moves, particle_faces(source_->mesh),
-                                     source_->bodies, source_->events));
+                                     source_->bodies, source_->events, source_->rest_scale));
 }
 
 std::string Outputs::text(Format format, const Cloth& cloth, double elapsed) const {
@@ -84,7 +84,8 @@ std::string Outputs::text(Format format, const Cloth& cloth, double elapsed) con
   if (format == Format::mesh) return obj_text(source_->mesh, scene, particle_positions(cloth));
   return scene_text(present_scene(scene, cloth), present_moves(source_->moves, scene, elapsed),
                     particle_faces(source_->mesh), present_bodies(source_->bodies, elapsed),
-                    present_events(source_->events, elapsed));
+                    present_events(source_->events, elapsed),
+                    present_scale(source_->rest_scale, elapsed));
 }
 
 void Outputs::add_frame(const Cloth& cloth, const StepReport& report, int frame, double elapsed) {

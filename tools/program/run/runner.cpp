@@ -144,11 +144,12 @@ void finish(RunSummary& summary, const Errors& errors, const Cloth& cloth) {
 
 /// The scene begins with some events: they move no particle.
 Result<void> begin_scene(const RunPlan& plan, const MovedAnchors& anchors, Events& events,
-                         MovedPins& pins, Cloth& cloth) {
+                         GrowingRest& rest, MovedPins& pins, Cloth& cloth) {
   const std::vector<Vec3> positions = particle_positions(cloth);
+  if (auto grown = rest.grow(cloth, 0); !grown) return grown;
   if (auto happened = events.happen(0, cloth, pins); !happened) return happened;
   if (auto sent = anchors.send(cloth, 0); !sent) return sent;
-  if (events.count() > 0 || anchors.any()) {
+  if (events.count() > 0 || anchors.any() || rest.has_grown()) {
     if (auto put = cloth.write_positions(positions); !put) return put;
     if (!plan.velocities.empty()) {
       if (auto thrown = cloth.write_velocities(plan.velocities); !thrown) return thrown;
@@ -166,7 +167,8 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
   MovedPins pins(plan.moves, cloth);
   const MovedAnchors anchors(plan.moves, cloth);
   Events events(plan.events);
-  if (auto begun = begin_scene(plan, anchors, events, pins, cloth); !begun)
+  GrowingRest rest(plan.rest_scale, cloth);
+  if (auto begun = begin_scene(plan, anchors, events, rest, pins, cloth); !begun)
     return Error{begun.error()};
   auto bodies = MovedBodies::add(plan.bodies, cloth);
   if (!bodies) return Error{bodies.error()};
@@ -176,6 +178,8 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
     const double last_begin = (plan.resume->frame - 1) * plan.dt;
     if (auto happened = events.happen(last_begin, cloth, pins); !happened)  // for its model
       return Error{happened.error()};
+    if (auto grown = rest.grow(cloth, plan.resume->frame * plan.dt); !grown)
+      return Error{grown.error()};
     if (auto loaded = cloth.load_state(plan.resume->cloth); !loaded) {
       return Error{fmt::format(
           "--resume: {}; a run goes on with the mesh, the material and the wind that it began with",
@@ -194,6 +198,7 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
     const double begin_of_frame = summary.last_frame() * plan.dt;
     const double end_of_frame = (summary.last_frame() + 1) * plan.dt;
     if (auto done = events.happen(begin_of_frame, cloth, pins); !done) return Error{done.error()};
+    if (auto grown = rest.grow(cloth, end_of_frame); !grown) return Error{grown.error()};
     const FrameCalls calls = calls_at(pins, bodies.value(), cloth, end_of_frame);
     if (auto done = apply(calls, cloth); !done) return Error{done.error()};
     if (auto sent = anchors.send(cloth, end_of_frame); !sent) return Error{sent.error()};

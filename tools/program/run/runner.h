@@ -19,6 +19,7 @@
 #include "tools/program/run/run_state.h"
 #include "tools/scenes/events.h"
 #include "tools/scenes/pin_moves.h"
+#include "tools/scenes/rest_scale.h"
 #include "tools/scenes/scene_body.h"
 
 namespace weft::tools {
@@ -39,6 +40,7 @@ struct RunPlan {
   std::vector<PinMove> moves = {};
   std::vector<SceneBody> bodies = {};
   std::vector<SceneEvent> events = {};
+  RestScale rest_scale = {};  ///< in each frame that of its end
   /// Of the scene, for particles that an event releases at its start; empty: all at rest.
   std::vector<Vec3> velocities = {};
   /// After every frame, of `surface` (SceneDescription::surface) and bodies that are meshes, and of

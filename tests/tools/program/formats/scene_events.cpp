@@ -41,11 +41,14 @@ TEST_CASE("events and moves of anchors survive writing and reading to the last b
                                     .translations = {{0, 1.0 / 3, 0}, {1, 0, 0}},
                                     .rotations = {{0, 0, 0.7}, {0, 0, 0}},
                                     .from = {{2, 1.0 / 7, 0}}}};
-  const std::string text = scene_text(scene, moves, {}, {}, kEvents);
+  const RestScale rest_scale{{-1, 1.0 / 3}, {1, 1.0 / 7}};
+  const std::string text = scene_text(scene, moves, {}, {}, kEvents, rest_scale);
   const auto again = parse_scene(text);
   REQUIRE(again);
-  const auto& [description, its_moves, faces, bodies, events] = again.value();
-  CHECK(scene_text(description, its_moves, faces, bodies, events) == text);
+  const auto& [description, its_moves, faces, bodies, events, its_scale] = again.value();
+  CHECK(scene_text(description, its_moves, faces, bodies, events, its_scale) == text);
+  CHECK(its_scale.times == rest_scale.times);
+  CHECK(its_scale.scales == rest_scale.scales);
   REQUIRE(events.size() == 4);
   CHECK(events[0].time == -1.0 / 3);
   CHECK(events[1].release == std::vector{0u});
@@ -88,6 +91,11 @@ TEST_CASE("errors of events and of anchors that move name their place") {
         "events[0].anchors[0].max_distance: expected a distance of at least 0, or null, not -1");
   CHECK(with(R"([{"time": 1, "anchors": [{"anchor": 0, "anchor": 1, "max_distance": 1}]}])") ==
         "the key 'anchor' is given twice");
+  const auto scale = [](const std::string& scales) {
+    return event_error(R"("rest_scale": {"times": [0, 1], "scales": )" + scales + "}");
+  };
+  CHECK(scale("[1]") == "rest_scale.scales: expected as many as times, 2, not 1");
+  CHECK(scale("[1, 0]") == "rest_scale.scales[1]: expected a scale above 0, not 0");
   const auto move = [](const std::string& who) {
     return event_error(R"("moves": [{"times": [0], "translations": [[0,0,0]], )" + who + "}]");
   };

@@ -1,0 +1,36 @@
+/// How the shape at rest of a scene's cloth grows and shrinks by itself (Cloth::set_rest_shape).
+#pragma once
+
+#include <weft/weft.h>
+
+#include <vector>
+
+namespace weft::tools {
+
+/// A factor of all lengths of the scene: linear between the times, still before the first and after
+/// the last.
+struct RestScale {
+  std::vector<double> times = {};   ///< s, increasing; empty: it stays 1
+  std::vector<double> scales = {};  ///< one per time
+};
+
+double scale_at(const RestScale& scale, double time);
+
+/// The shape of one cloth, which must be as its scene has it.
+class GrowingRest {
+ public:
+  GrowingRest(const RestScale& scale, const Cloth& cloth);
+  /// Gives the cloth its shape of `time`, unless it has that already.
+  Result<void> grow(Cloth& cloth, double time);
+  bool has_grown() const { return last_ != 1; }
+
+ private:
+  RestScale scale_;
+  SceneDescription scene_;
+  double last_ = 1;
+};
+
+/// That of a scene which goes on after `elapsed` seconds: all times become less by that.
+RestScale present_scale(const RestScale& scale, double elapsed);
+
+}  // namespace weft::tools
