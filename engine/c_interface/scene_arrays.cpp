@@ -91,6 +91,8 @@ void read_particles(const weft_scene& s, Arrays& in, SceneDescription& out) {
   out.velocities = list_of(in.optional<Vec3>("velocities", s.velocities, n));
   out.masses = list_of(in.needed<double>("masses", s.masses, n));
   out.fixed = list_of(in.needed<std::uint32_t>("fixed", s.fixed, s.fixed_count));
+  out.rail_particles =
+      list_of(in.needed<std::uint32_t>("rail_particles", s.rail_particles, s.rail_particle_count));
   out.spheres = list_of(in.needed<std::uint32_t>("spheres", s.spheres, s.sphere_count));
   out.radii = list_of(in.optional<double>("radii", s.radii, n));
 }
@@ -152,6 +154,8 @@ weft_scene scene_of(const SceneDescription& scene, const SceneArrays& arrays) {
   out.masses = scene.masses.data();
   out.fixed_count = scene.fixed.size();
   out.fixed = scene.fixed.data();
+  out.rail_particle_count = scene.rail_particles.size();
+  out.rail_particles = scene.rail_particles.data();
   write_elements(scene, arrays, out);
   out.surface_count = scene.surface.size();
   out.surface_triangles = as_numbers<std::uint32_t>(scene.surface);

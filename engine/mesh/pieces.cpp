@@ -24,6 +24,10 @@ void for_each_joint(const SceneDescription& scene, Join join) {
   }
   for (const Seam& seam : scene.seams) join(seam.a, seam.b);
   for (const Tether& tether : scene.tethers) join(tether.particle, tether.pin);
+  for (const Slider& slider : scene.sliders) {
+    for (std::uint32_t i = slider.first; i <= slider.last; ++i)
+      join(slider.particle, scene.rail_particles[i]);
+  }
 }
 
 /// Spheres that are joined to nothing.

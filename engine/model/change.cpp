@@ -29,6 +29,7 @@ class Describer {
     description_.tethers = model_.tethers;
     description_.tether_slack = model_.tether_slack;
     describe_seams();
+    describe_sliders();
     description_.damping = model_.damping;
     description_.friction = model_.friction;
     description_.self_contact = model_.self_contact;
@@ -115,6 +116,13 @@ class Describer {
     for (std::size_t i = 0; i < s.size(); ++i) {
       description_.seams.push_back({particle(s.a[i]), particle(s.b[i]), s.time[i], s.force[i]});
     }
+  }
+
+  void describe_sliders() {
+    const SliderStore& s = model_.sliders;
+    for (std::size_t i = 0; i < s.size(); ++i)
+      description_.sliders.push_back({particle(s.slot[i]), s.first[i], s.last[i], s.friction[i]});
+    description_.rail_particles = particles(s.rail);
   }
 
   void describe_air() {

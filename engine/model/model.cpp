@@ -95,6 +95,7 @@ Model::Model(const SceneDescription& description, const Model* like)
   store_bending(description);
   store_anchors(description);
   store_seams(description);
+  store_sliders(description);
   store_surface(description);
   store_air(description);
   const auto place = [&](std::uint32_t slot) { return initial_position[slot]; };
@@ -271,6 +272,17 @@ void Model::store_seams(const SceneDescription& d) {
   }
 }
 
+void Model::store_sliders(const SceneDescription& d) {
+  for (const Slider& slider : d.sliders) {
+    sliders.slot.push_back(ordering.slot_of[slider.particle]);
+    sliders.first.push_back(slider.first);
+    sliders.last.push_back(slider.last);
+    sliders.friction.push_back(slider.friction);
+  }
+  for (const std::uint32_t particle : d.rail_particles)
+    sliders.rail.push_back(ordering.slot_of[particle]);
+}
+
 void Model::store_surface(const SceneDescription& d) {
   for (const auto& [a, b, c] : d.surface)
     surface.push_back({ordering.slot_of[a], ordering.slot_of[b], ordering.slot_of[c]});
@@ -433,6 +445,10 @@ std::size_t SeamStore::bytes() const {
   return bytes_of(a) + bytes_of(b) + bytes_of(time) + bytes_of(force);
 }
 
+std::size_t SliderStore::bytes() const {
+  return bytes_of(slot) + bytes_of(first) + bytes_of(last) + bytes_of(friction) + bytes_of(rail);
+}
+
 std::size_t AnchorStore::bytes() const {
   return bytes_of(slot) + bytes_of(limits) + bytes_of(described) + bytes_of(pins) + bytes_of(at);
 }
@@ -458,9 +474,10 @@ std::size_t Model::bytes() const {
          bytes_of(pins) + bytes_of(holds) + bytes_of(spheres) + bytes_of(is_sphere) +
          bytes_of(joined_) + bytes_of(tethers) + ordering.bytes() + constraints.bytes() +
          membrane.bytes() + bending.bytes() + inert.bytes() + anchors.bytes() + seams.bytes() +
-         bytes_of(surface) + bytes_of(air.triangles) + air.at.bytes() + reference_.bytes() +
-         simd_.bytes() + chunk_neighbours_.bytes() + pulls_.bytes() + direct_.bytes() +
-         yarns_.bytes() + small_steps_.bytes() + bending_fronts_.bytes() + touched_surface_.bytes();
+         sliders.bytes() + bytes_of(surface) + bytes_of(air.triangles) + air.at.bytes() +
+         reference_.bytes() + simd_.bytes() + chunk_neighbours_.bytes() + pulls_.bytes() +
+         direct_.bytes() + yarns_.bytes() + small_steps_.bytes() + bending_fronts_.bytes() +
+         touched_surface_.bytes();
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {

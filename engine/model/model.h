@@ -141,6 +141,24 @@ struct SeamStore {
   std::size_t bytes() const;
 };
 
+/// Sliders (weft.h) in the order of the description, and their rails.
+struct SliderStore {
+  std::vector<std::uint32_t> slot, first, last;
+  std::vector<double> friction;
+  std::vector<std::uint32_t> rail;  // slots of rail_particles
+  std::size_t size() const { return slot.size(); }
+  std::uint32_t pieces(std::size_t i) const { return last[i] - first[i]; }
+  bool is_closed(std::size_t i) const { return rail[first[i]] == rail[last[i]]; }
+  /// The ends of a piece, and the particles before and behind; of a rail that ends there the end.
+  std::array<std::uint32_t, 4> around(std::size_t i, std::uint32_t piece) const {
+    const std::uint32_t a = first[i] + piece, b = a + 1;
+    const std::uint32_t before = a > first[i] ? a - 1 : is_closed(i) ? last[i] - 1 : a;
+    const std::uint32_t behind = b < last[i] ? b + 1 : is_closed(i) ? first[i] + 1 : b;
+    return {rail[before], rail[a], rail[b], rail[behind]};
+  }
+  std::size_t bytes() const;
+};
+
 /// Links of the first `count` constraints, between slots.
 std::vector<Link> links_of(const ConstraintStore& store, std::size_t count);
 
@@ -182,6 +200,7 @@ class Model {
   BendingStore bending;
   AnchorStore anchors;
   SeamStore seams;
+  SliderStore sliders;
   std::vector<Tether> tethers;  // as described
   double tether_slack = 0;
   std::vector<std::array<std::uint32_t, 3>> surface;  // triangles, between slots
@@ -250,6 +269,7 @@ class Model {
   void store_bending(const SceneDescription& description);
   void store_anchors(const SceneDescription& description);
   void store_seams(const SceneDescription& description);
+  void store_sliders(const SceneDescription& description);
   void store_surface(const SceneDescription& description);
   void store_air(const SceneDescription& description);
   void list_air_triangles();

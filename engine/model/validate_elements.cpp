@@ -34,6 +34,8 @@ Rule rule_of(const FieldName& field, const Tether& tether, std::size_t) {
   return refuse(field, "ties a particle to itself", std::to_string(tether.pin));
 }
 
+Rule rule_of(const FieldName&, const Slider&, std::size_t) { return {}; }
+
 Rule rule_of(const FieldName& field, const Anchor& anchor, std::size_t) {
   if (anchor.backstop_radius == 0) return {};
   if (anchor.backstop_radius < kLeastSquared) {
@@ -163,6 +165,48 @@ Rule rule_of_list(const SceneDescription& d, const std::vector<Tether>& tethers)
     return refuse(element("tethers", i) + ".particle",
                   anchored[particle] ? "has an anchor" : "has a tether already",
                   std::to_string(particle));
+  }
+  return {};
+}
+
+Rule rule_of_rail(const SceneDescription& d, const FieldName& field, const Slider& slider) {
+  const std::vector<std::uint32_t>& rail = d.rail_particles;
+  const FieldName particles("rail_particles");
+  if (slider.last >= rail.size()) {
+    return refuse(field.member("last"),
+                  "is not in rail_particles, which has " + std::to_string(rail.size()),
+                  std::to_string(slider.last));
+  }
+  if (slider.first >= slider.last)
+    return refuse(field.member("first"), "must be before the last", std::to_string(slider.first));
+  for (std::uint32_t i = slider.first; i <= slider.last; ++i) {
+    const FieldName at = particles.at(i);
+    if (auto r = validate_particle(at, rail[i], d.positions.size()); !r) return r;
+    if (rail[i] == slider.particle)
+      return refuse(at, "slides on this rail itself", std::to_string(rail[i]));
+    if (i > slider.first && rail[i] == rail[i - 1])
+      return refuse(at, "follows itself", std::to_string(rail[i]));
+  }
+  const bool is_closed = rail[slider.first] == rail[slider.last];
+  if (!is_closed || slider.last - slider.first >= 3) return {};
+  return refuse(field.member("last"), "a closed rail needs three particles",
+                std::to_string(slider.last));
+}
+
+Rule rule_of_list(const SceneDescription& d, const std::vector<Slider>& sliders) {
+  const FieldName list("sliders"), particles("rail_particles");
+  std::vector<bool> slides(sliders.empty() ? 0 : d.positions.size());
+  for (std::size_t i = 0; i < sliders.size(); ++i) {
+    const FieldName field = list.at(i);
+    if (auto r = rule_of_rail(d, field, sliders[i]); !r) return r;
+    const std::uint32_t particle = sliders[i].particle;
+    if (slides[particle])
+      return refuse(field.member("particle"), "slides on a rail already", std::to_string(particle));
+    slides[particle] = true;
+  }
+  for (std::size_t i = 0; i < d.rail_particles.size(); ++i) {
+    if (auto r = validate_particle(particles.at(i), d.rail_particles[i], d.positions.size()); !r)
+      return r;
   }
   return {};
 }

@@ -39,8 +39,8 @@ void visit_fields(ScenePart auto& part, auto& archive) {
 
 void visit_fields(Is<SceneDescription> auto& scene, auto& archive) {
   archive(scene.positions, scene.velocities, scene.masses, scene.fixed, scene.surface,
-          scene.damping, scene.air, scene.pressures, scene.self_contact, scene.spheres,
-          scene.radii);
+          scene.damping, scene.air, scene.pressures, scene.self_contact, scene.spheres, scene.radii,
+          scene.rail_particles);
   for_each_element_kind([&](const auto& kind) { archive(scene.*kind.list); });
   for_each_part_field<SceneDescription>([&](const auto& field) { archive(scene.*field.member); });
 }
@@ -48,7 +48,7 @@ void visit_fields(Is<SceneDescription> auto& scene, auto& archive) {
 inline constexpr std::uint32_t kListedInScenes =
     std::tuple_size_v<decltype(kElementKinds)> +
     std::tuple_size_v<decltype(kPartFields<SceneDescription>)>;
-static_assert(detail::has_fields<SceneDescription, 11 + kListedInScenes>(),
+static_assert(detail::has_fields<SceneDescription, 12 + kListedInScenes>(),
               "a field of SceneDescription is not saved");
 
 // body.h

@@ -54,13 +54,13 @@ Solver solver_for(const Model& model, const Settings& settings) {
   return ropes && few_bodies ? Solver::direct : Solver::yarn;
 }
 
-/// Small steps alone solve triangles of fabric, bending, anchors and seams, and are chosen for
-/// springs unless another scheme is asked for.
+/// Small steps alone solve triangles of fabric, bending, anchors, seams and sliders, and are chosen
+/// for springs unless another scheme is asked for.
 bool is_for_small_steps(const Model& model, const Settings& settings) {
   const bool springs = model.constraints.has_springs() && settings.scheme == Scheme::automatic;
   return springs || model.self_contact.on || !model.pressures.empty() ||
          model.membrane.size() > 0 || model.bending.size() > 0 || model.anchors.size() > 0 ||
-         model.seams.size() > 0 || is_of_small_steps(settings.scheme);
+         model.seams.size() > 0 || model.sliders.size() > 0 || is_of_small_steps(settings.scheme);
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ class FramePasses {
       : contacts_(contacts),
         report_(report),
         constraints_(static_cast<std::int64_t>(model.constraints.size() + model.membrane.size() +
-                                               model.seams.size())),
+                                               model.seams.size() + model.sliders.size())),
         local_visit_(time_of_local_visit(model)) {}
 
   void begin(double most) { left_ = most; }
@@ -76,7 +76,8 @@ class FramePasses {
   /// The time of local passes over everything, in visits of a sweep that take as long.
   static double time_of_local_visit(const Model& model) {
     const auto triangles = static_cast<double>(model.membrane.size());
-    const auto others = static_cast<double>(model.constraints.size() + model.seams.size());
+    const auto others =
+        static_cast<double>(model.constraints.size() + model.seams.size() + model.sliders.size());
     if (triangles == 0) return tuning::kLocalVisit;
     const double time = tuning::kLocalVisitOfTriangle * triangles + tuning::kLocalVisit * others;
     return time / (triangles + others);
@@ -87,7 +88,7 @@ class FramePasses {
 
   const SphereContacts& contacts_;
   StepReport& report_;
-  const std::int64_t constraints_;  // triangles of fabric and seams are among them
+  const std::int64_t constraints_;  // triangles of fabric, seams and sliders are among them
   const double local_visit_;        // in visits of a sweep
   double held_ = 0;                 // likewise, of what is held by meshes beside a local visit
   double left_ = 0;

@@ -144,7 +144,8 @@ FramePlan plan_of_step(State& s, const Attempt& attempt, double dt, const Budget
                  .omega = tuning::kOmega,
                  .placed = s.placed || takes_over,
                  .anchors = s.anchors.travel(),
-                 .seams = s.seams.states()};
+                 .seams = s.seams.states(),
+                 .sliders = s.sliders.places()};
   add_bodies(s, plan);
   keep_length(s, dt);
   const double usual = usual_length(s, dt);
@@ -178,6 +179,7 @@ FramePlan plan_of_projection(State& s, double softest, double h, bool goes_on,
                  .softest = softest,
                  .anchors = s.anchors.standing(),
                  .seams = s.seams.states(),
+                 .sliders = s.sliders.places(),
                  .goes_on = goes_on};
   add_bodies(s, plan);
   return plan;
@@ -189,7 +191,8 @@ FramePlan plan_of_look_ahead(const State& s, double h) {
           .placed = true,
           .softest = std::numeric_limits<double>::infinity(),
           .anchors = s.anchors.standing(),
-          .seams = s.seams.states()};
+          .seams = s.seams.states(),
+          .sliders = s.sliders.places()};
 }
 
 double next_refinement(const State& s, const FramePlan& plan, const FrameCourse& course,

@@ -19,6 +19,8 @@ namespace weft {
 namespace {
 
 bool is_out_of_tolerance(State& s, Team& team) {
+  if (largest_rail_gap(*s.model, s.sliders.places(), s.position) > s.settings.contact_tolerance)
+    return true;
   if (s.anchors.largest_excess(s.model->anchors, s.position, false) > s.settings.contact_tolerance)
     return true;
   if (!s.model->constraints.has_springs())

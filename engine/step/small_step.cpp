@@ -140,6 +140,7 @@ class Frame {
       report_.max_seam_gap = gaps.largest;
       report_.late_seams = gaps.late;
       report_.worst_seam = gaps.worst_late;
+      report_.max_rail_gap = largest_rail_gap(*s_.model, solver_.sliders().places(), s_.solved);
       if (s_.model->has_laws()) {
         const double of_rigid = s_.model->constraints.has_springs() ? 0 : report_.max_error;
         report_.max_error = std::max(of_rigid, solver_.law_error());
@@ -148,7 +149,8 @@ class Frame {
     return report_.max_error <= s_.settings.tolerance &&
            report_.max_penetration <= s_.settings.contact_tolerance &&
            report_.max_anchor_error <= s_.settings.contact_tolerance &&
-           report_.max_seam_gap <= s_.settings.contact_tolerance;
+           report_.max_seam_gap <= s_.settings.contact_tolerance &&
+           report_.max_rail_gap <= s_.settings.contact_tolerance;
   }
 
   /// J, by springs, triangles of fabric and bending elements, since the beginning: there those that
@@ -181,8 +183,8 @@ class Frame {
   }
   /// The largest, as reported.
   double error_in_tolerances() const {
-    const double distance =
-        std::max({report_.max_penetration, report_.max_anchor_error, report_.max_seam_gap});
+    const double distance = std::max({report_.max_penetration, report_.max_anchor_error,
+                                      report_.max_seam_gap, report_.max_rail_gap});
     return std::max(report_.max_error / s_.settings.tolerance,
                     distance / s_.settings.contact_tolerance);
   }
@@ -264,6 +266,7 @@ void commit(State& s, const Remains& remains, Team& team) {
   s.lost_energy = remains.lost_energy;
   if (s.laws) s.elastic_energy = energy_of_springs(*s.model, s.solved, s.give_per_mass);
   s.seams.take(s.small_steps->seams().states());
+  s.sliders.take(s.small_steps->sliders().places());
   if (!takes_over_in(s)) s.small_steps->keep(team);  // else the past is not looked at
 }
 

@@ -35,6 +35,7 @@
 #include "engine/step/pins.h"
 #include "engine/step/rest.h"
 #include "engine/step/seams.h"
+#include "engine/step/sliders.h"
 #include "kernels/impulse_energy.h"
 #include "kernels/vectors.h"
 
@@ -73,6 +74,7 @@ struct Pressed {
 struct Checkpoint {
   kernels::Vectors position, velocity;
   Seams seams;
+  Sliders sliders;
   double lost_energy = 0, elastic_energy = 0, give_per_mass = 0, longest_substep = 0;
 };
 
@@ -102,6 +104,7 @@ struct LastingState {
   Pins pins;
   Anchors anchors;
   Seams seams;
+  Sliders sliders;
   Bodies bodies;
   bool placed = true;         // positions were given, not stepped to: they may violate constraints
   bool displaced = false;     // they may, though stepped to: a pin was put down, the model changed
@@ -125,11 +128,11 @@ struct LastingState {
   void forget_past();
   friend void visit_fields(Is<LastingState> auto& state, auto& archive) {
     auto& [position, velocity, force, gravity, wind, way, pressures, gas, pins, anchors, seams,
-           bodies, placed, displaced, rests_differ, lost_energy, elastic_energy, give_per_mass,
-           longest_substep, refinement, lengthening, rest, asleep] = state;
+           sliders, bodies, placed, displaced, rests_differ, lost_energy, elastic_energy,
+           give_per_mass, longest_substep, refinement, lengthening, rest, asleep] = state;
     archive(position, velocity, force, gravity, wind, way, pressures, gas, pins, anchors, seams,
-            bodies, placed, displaced, rests_differ, lost_energy, elastic_energy, give_per_mass,
-            longest_substep, refinement, lengthening, rest, asleep);
+            sliders, bodies, placed, displaced, rests_differ, lost_energy, elastic_energy,
+            give_per_mass, longest_substep, refinement, lengthening, rest, asleep);
   }
 };
 

@@ -26,6 +26,7 @@ class Transaction {
  public:
   explicit Transaction(State& s) : s_(s), refinement_(s.refinement) {
     s_.step_start.seams = s_.seams;
+    s_.step_start.sliders = s_.sliders;
     s_.step_start.lost_energy = s_.lost_energy;
     s_.step_start.elastic_energy = s_.elastic_energy;
     s_.step_start.give_per_mass = s_.give_per_mass;
@@ -35,6 +36,7 @@ class Transaction {
     if (committed_) return;
     s_.refinement = refinement_;
     std::swap(s_.seams, s_.step_start.seams);
+    std::swap(s_.sliders, s_.step_start.sliders);
     s_.lost_energy = s_.step_start.lost_energy;
     s_.elastic_energy = s_.step_start.elastic_energy;
     s_.give_per_mass = s_.step_start.give_per_mass;
@@ -92,6 +94,7 @@ class OneStep {
   bool run(double dt) {
     if (s_.placed && s_.model->self_contact.on)
       timed(report_, Stage::commit, [&] { part_layers(); });
+    if (s_.placed) s_.sliders.begin(*s_.model, s_.position);
     timed(report_, Stage::solve_positions, [&] {
       if (presses(s_)) find_forces(0, dt);
       const OutOfPlace found = find_out_of_place(s_, team_);
@@ -291,7 +294,8 @@ void fall_asleep(State& s, StepReport& report) {
               .late_seams = report.late_seams,
               .worst_seam = report.worst_seam,
               .held_apart = report.held_apart,
-              .worst_held = report.worst_held};
+              .worst_held = report.worst_held,
+              .max_rail_gap = report.max_rail_gap};
 }
 
 /// J. Where bodies overlap, and wherever else a step misses its tolerance, they push particles to

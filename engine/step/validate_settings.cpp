@@ -148,6 +148,7 @@ Result<void> validate_for_solver(const Settings& s, const Model& model) {
        {std::pair{"membrane", model.membrane.size()}, std::pair{"bending", model.bending.size()},
         std::pair{"anchors", model.anchors.described.size()},
         std::pair{"tethers", model.anchors.pins.size()}, std::pair{"seams", model.seams.size()},
+        std::pair{"sliders", model.sliders.size()},
         std::pair{"pressures", model.pressures.size()}}) {
     if (count > 0)
       return refuse(what, "is solved by small_steps only", std::string(name(s.solver)));

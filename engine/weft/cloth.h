@@ -183,6 +183,8 @@ struct StepReport {
   int held_apart = 0;
   std::uint32_t worst_held = kNoIndex;  ///< of these, the constraint with the largest strain
   double untangling_work = 0;           ///< J, work of SelfContact::untangle
+  double max_rail_gap =
+      0;  ///< m, of sliders from their rails: bounded by contact_tolerance (Slider)
 };
 
 /// Strain of all constraints, and of triangles of fabric | |f_u| - 1 | and | |f_v| - 1 |, for the

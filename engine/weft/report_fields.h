@@ -107,6 +107,7 @@ inline constexpr std::tuple kReportFields{
     ReportField{"worst_held", &StepReport::worst_held, OverSteps::last,
                 "the number of such a constraint, or kNoIndex"},
     ReportField{"untangling_work", &StepReport::untangling_work, OverSteps::sum, "J"},
+    ReportField{"max_rail_gap", &StepReport::max_rail_gap, OverSteps::largest, "m"},
 };
 inline constexpr std::size_t kReportFieldCount = std::tuple_size_v<decltype(kReportFields)>;
 

@@ -1,5 +1,5 @@
-/// Scenes and models: particles, and the constraints, fabric, anchors, seams, air and forces that
-/// join and move them. Part of weft.h.
+/// Scenes and models: particles, and the constraints, fabric, anchors, seams, rails, air and forces
+/// that join and move them. Part of weft.h.
 ///
 ///   weft::SceneDescription scene;                 // plain vectors, SI units
 ///   scene.positions = {{0, 0, 0}, {1, 0, 0}};     // m, one per particle
@@ -199,6 +199,28 @@ struct Tether {
   double length = 0;  ///< m, 1e-150 to 1e150
 };
 
+/// A particle that slides along a rail: curtain rings on a rod, beads on a wire, eyelets along a
+/// drawstring, a cord in a hem. The rail leads through the particles
+/// SceneDescription::rail_particles[first] to [last]. Its particles may be fixed, so that it stands
+/// or moves where they are moved, or free: then it feels the force of what slides on it, and
+/// momentum is conserved. It is a smooth curve through them, and closed where the first particle is
+/// the last one, too. Its ends are stops.
+///
+/// The particle is kept on the rail to Settings::contact_tolerance (StepReport::max_rail_gap).
+/// Along the rail Coulomb's friction holds it: up to `friction` times the force across the rail. So
+/// a cord whose particles all slide on one rail, around a drum, holds e^(friction angle) times the
+/// tension at its other end. So does a cord that is the rail, where it turns over a particle by up
+/// to 30 degrees; at sharper turns its links catch there.
+///
+/// It begins at the nearest point of the rail, and is drawn there when the first step begins. Cloth
+/// that touches itself (SelfContact) keeps its thickness from constraints of a rail, sliders too.
+/// Solver small_steps only.
+struct Slider {
+  std::uint32_t particle = 0;         ///< in at most one slider, and not on its rail
+  std::uint32_t first = 0, last = 0;  ///< first < last, in SceneDescription::rail_particles
+  double friction = 0;                ///< Coulomb's coefficient, at least 0
+};
+
 /// Two particles that are sewn together while the cloth moves, wherever they begin. They come
 /// together along the straight line between them in the time `time`, never faster. If max_force is
 /// too small for that, they take longer. Then the seam is closed for good: it holds any force. An
@@ -297,6 +319,9 @@ struct SceneDescription {
   /// there, at rest, by this share. When pins are released or fixed (Cloth::change) the nearest
   /// ones count. Infinite: there are none but `tethers`.
   double tether_slack = std::numeric_limits<double>::infinity();
+
+  std::vector<Slider> sliders;
+  std::vector<std::uint32_t> rail_particles;  ///< of all rails, each in its order (Slider)
 };
 
 /// A scene that is checked and prepared: topology, colours, rest lengths, masses. It never

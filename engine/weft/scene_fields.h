@@ -182,6 +182,18 @@ inline constexpr std::tuple kElementFields<Tether>{
                  &weft_scene::tether_lengths},
 };
 
+template <>
+inline constexpr std::tuple kElementFields<Slider>{
+    ElementField{"particle", &Slider::particle, Values::particle, Given::always, "slider_particles",
+                 &weft_scene::slider_particles},
+    ElementField{"first", &Slider::first, Values::ruled, Given::always, "slider_rails",
+                 &weft_scene::slider_rails},
+    ElementField{"last", &Slider::last, Values::ruled, Given::always, "slider_rails",
+                 &weft_scene::slider_rails},
+    ElementField{"friction", &Slider::friction, Values::not_negative, Given::maybe,
+                 "slider_frictions", &weft_scene::slider_frictions, Given::maybe},
+};
+
 /// The fields of a part, in the order in which its struct declares them; of the scene itself those
 /// that are one value.
 template <class Part>
@@ -292,6 +304,7 @@ inline constexpr std::tuple kElementKinds{
     ElementKind{"anchors", "Anchor", &SceneDescription::anchors, &weft_scene::anchor_count},
     ElementKind{"seams", "Seam", &SceneDescription::seams, &weft_scene::seam_count},
     ElementKind{"tethers", "Tether", &SceneDescription::tethers, &weft_scene::tether_count},
+    ElementKind{"sliders", "Slider", &SceneDescription::sliders, &weft_scene::slider_count},
 };
 
 namespace detail {

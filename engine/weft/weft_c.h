@@ -178,6 +178,13 @@ typedef struct weft_scene { /* SceneDescription */
   const uint32_t* tether_particles; /* 2 each: particle, pin */
   const double* tether_lengths;
   double tether_slack;
+
+  size_t slider_count;
+  const uint32_t* slider_particles;
+  const uint32_t* slider_rails;   /* 2 each: the first and the last in rail_particles */
+  const double* slider_frictions; /* or NULL: 0 */
+  size_t rail_particle_count;
+  const uint32_t* rail_particles;
 } weft_scene;
 
 typedef struct weft_model_info { /* ModelInfo */
@@ -280,7 +287,7 @@ typedef struct weft_report { /* StepReport */
   uint32_t worst_seam;
   int held_apart;
   uint32_t worst_held;
-  double untangling_work;
+  double untangling_work, max_rail_gap;
 } weft_report;
 
 /* JobSystem. Set both functions or neither; they must not throw. NULL in place of the struct is the

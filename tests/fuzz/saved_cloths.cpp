@@ -20,6 +20,8 @@ SceneDescription with_everything() {
   scene.bending = {{{0, 1, 2, kNoIndex}, {1, -2, 1, 0}, 0, 1}};
   scene.anchors = {{.particle = 2, .point = {2, 0, 0}, .max_distance = 1}};
   scene.seams = {{.a = 2, .b = 3}};
+  scene.sliders = {{.particle = 3, .first = 0, .last = 1, .friction = 0.2}};
+  scene.rail_particles = {4, 5};
   scene.surface = {{1, 2, 4}, {2, 5, 4}};
   scene.air.triangles = {{0, 1, 2}};
   scene.air.drag = scene.air.ram = 1;

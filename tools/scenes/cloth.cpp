@@ -168,6 +168,19 @@ void add_sphere(const Ball& ball, SceneDescription& description) {
   if (ball.is_fixed) description.fixed.push_back(number);
 }
 
+void add_rod(const Rod& rod, const std::vector<std::uint32_t>& particle_of_vertex,
+             SceneDescription& description) {
+  for (const Vec3 end : {rod.from, rod.to}) {
+    const auto number = static_cast<std::uint32_t>(description.positions.size());
+    description.positions.push_back(end);
+    description.masses.push_back(1);
+    description.fixed.push_back(number);
+    description.rail_particles.push_back(number);
+  }
+  for (const std::uint32_t ring : rod.rings)
+    description.sliders.push_back({particle_of_vertex[ring], 0, 1, rod.friction});
+}
+
 }  // namespace
 
 Result<Scene> cloth_of(const Layout& layout, const Options& options) {
@@ -179,6 +192,7 @@ Result<Scene> cloth_of(const Layout& layout, const Options& options) {
   scene.bodies = layout.bodies;
   scene.moves = moves_of(layout, scene.mesh.particle_of_vertex);
   scene.description.self_contact.on = layout.touches_itself;
+  if (layout.rod) add_rod(*layout.rod, scene.mesh.particle_of_vertex, scene.description);
   if (layout.sphere) add_sphere(*layout.sphere, scene.description);
   return made;
 }

@@ -169,6 +169,27 @@ Layout table(const Options& options) {
   return layout;
 }
 
+/// It hangs in slight waves, so that it knows where to fold.
+Layout rings(const Options& options) {
+  constexpr int kRings = 8, kWaves = 8;
+  constexpr double kWave = 0.005, kPulled = 0.6, kFriction = 0.2;  // m, m, 1
+  const Grid grid{options.size};
+  const int last = grid.size - 1;
+  Layout layout = sheet(options.size, [&](int i, int j) {
+    const double wave = kWave * std::sin(2 * M_PI * kWaves * grid.fraction(j)) * grid.fraction(i);
+    return Vec3{grid.fraction(j), -grid.fraction(i), wave};
+  });
+  Rod rod{{-0.1, 0, 0}, {1.1, 0, 0}, kFriction};
+  for (int k = 1; k < kRings; ++k) rod.rings.push_back(grid.number(0, k * last / kRings));
+  layout.rod = rod;
+  layout.pins = {grid.number(0, 0), grid.number(0, last)};
+  layout.moves.push_back({.particles = {grid.number(0, last)},
+                          .times = {0.2, 1.7, 2.2, 3.7},
+                          .translations = {{}, {-kPulled, 0, 0}, {-kPulled, 0, 0}, {}}});
+  layout.touches_itself = true;
+  return layout;
+}
+
 Layout cushion(const Options& options) {
   constexpr double kRadius = 0.15, kThickness = 1e-3, kDepth = 0.06, kWay = 0.2;  // m
   constexpr double kHeight = kRadius + kThickness, kTurn = kWay / kRadius;        // rad

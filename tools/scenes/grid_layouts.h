@@ -17,5 +17,6 @@ Layout flag(const Options& options);
 Layout drape(const Options& options);
 Layout table(const Options& options);
 Layout cushion(const Options& options);
+Layout rings(const Options& options);
 
 }  // namespace weft::scenes

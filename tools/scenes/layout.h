@@ -29,6 +29,13 @@ struct Ball {
   bool is_fixed = true;
 };
 
+/// A fixed rod that vertices slide along, as rings do.
+struct Rod {
+  Vec3 from, to;  ///< m
+  double friction = 0;
+  std::vector<std::uint32_t> rings = {};  ///< vertices
+};
+
 struct Layout {
   std::vector<Vec3> start;  ///< m, where each vertex begins
   std::vector<Vec3> rest;   ///< m, where each lies in the shape at rest; empty: as `start`
@@ -37,6 +44,7 @@ struct Layout {
   std::vector<std::uint32_t> pins;                  ///< fixed vertices
   std::optional<Grid> grid;    ///< whose vertices these are: its edges have one length
   std::optional<Ball> sphere;  ///< a particle after those of the cloth
+  std::optional<Rod> rod;      ///< whose ends are particles after those of the cloth
   Vec3 wind;                   ///< m/s; only cloth of a material feels it
   std::vector<tools::SceneBody> bodies;
   std::vector<tools::PinMove> moves;  ///< of vertices in place of particles

@@ -120,7 +120,7 @@ struct Entry {
   Result<Scene> (*make)(const Options&);
 };
 
-constexpr std::array<Entry, 23> kEntries{{
+constexpr std::array<Entry, 24> kEntries{{
     {{"hang", "a sheet with one fixed side swings down"}, 2, anything, cloth<hang>},
     {{"hang_sphere", "the same, swinging into a fixed sphere"}, 2, anything, cloth<hang_sphere>},
     {{"sphere_drop", "a heavy sphere drops into a sagging sheet"},
@@ -142,6 +142,10 @@ constexpr std::array<Entry, 23> kEntries{{
      3,
      anything,
      cloth<cushion>},
+    {{"rings", "a curtain of cotton on rings is drawn along a rod, and back", true},
+     9,
+     anything,
+     cloth<rings>},
     {{"tunic", "a sewn tunic of cotton hangs from two pegs", true}, 20, anything, garment<tunic>},
     {{"skirt", "a flared skirt of cotton falls from its waist", true},
      20,

@@ -71,6 +71,7 @@ void add_particles(Fields<Scene>& scene) {
       .array("fixed", &Scene::fixed, "particles of infinite inertia")
       .array("surface", &Scene::surface,
              "triangles of the cloth, which meshes touch, an array (n, 3)")
+      .array("rail_particles", &Scene::rail_particles, "of all rails, each in its order")
       .array("spheres", &Scene::spheres, "particles that others collide with")
       .array("radii", &Scene::radii, "m, one per particle; empty without spheres");
 }

@@ -26,8 +26,9 @@ struct Blocks {
   std::size_t of_constraints = 0;
 };
 
-/// Anchored particles that cloth may hang on: a limit that is wider than another by more than a
-/// constraint is long is slack where that holds. A pin is a limit of 0.
+/// Anchored particles that cloth may hang on, and those that slide on a rail which stands: a limit
+/// that is wider than another by more than a constraint is long is slack where that holds. A pin is
+/// a limit of 0.
 std::vector<std::uint32_t> anchors_that_hold(const Model& model, double mean_length) {
   const AnchorStore& anchors = model.anchors;
   double least = model.holds.empty() ? std::numeric_limits<double>::infinity() : 0;
@@ -36,6 +37,10 @@ std::vector<std::uint32_t> anchors_that_hold(const Model& model, double mean_len
   for (std::size_t i = 0; i < anchors.described.size(); ++i) {
     if (anchors.limits[i].most <= least + mean_length && std::isfinite(anchors.limits[i].most))
       slots.push_back(anchors.slot[i]);
+  }
+  for (std::size_t i = 0; i < model.sliders.size() && mean_length > 0; ++i) {
+    if (model.inverse_mass[model.sliders.rail[model.sliders.first[i]]] == 0)
+      slots.push_back(model.sliders.slot[i]);
   }
   return slots;
 }

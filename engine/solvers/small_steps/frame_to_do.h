@@ -7,6 +7,7 @@
 #include "engine/contact/interval.h"
 #include "engine/solvers/small_steps/anchor_travel.h"
 #include "engine/solvers/small_steps/seams.h"
+#include "engine/solvers/small_steps/sliders.h"
 
 namespace weft {
 
@@ -22,6 +23,7 @@ struct FramePlan {
   std::optional<double> softest{};
   AnchorTravel anchors{};
   std::span<const SeamState> seams{};
+  std::span<const reference::RailPlace> sliders{};
   std::span<const TravellingBody> bodies{};
   bool bodies_move = false;     // in this step, or in the last, or there are other ones
   bool bodies_are_new = false;  // there are other ones, or one was put elsewhere

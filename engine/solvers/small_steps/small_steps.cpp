@@ -23,6 +23,7 @@ class StoredSmallSteps final : public SmallSteps {
         layout_(model.small_steps()),
         now_{model, settings},
         seams_(model),
+        sliders_(model, settings.contact_tolerance),
         linkage_(model, layout_.linkage),
         store_(now_, table) {
     now_.arrived.reserve(model.anchors.size() + linkage_.slots());
@@ -40,6 +41,7 @@ class StoredSmallSteps final : public SmallSteps {
     now_.jolts.clear();
     now_.has_past = !plan.placed && plan.h <= SubstepFormula::kLargestRatio * store_.past_h();
     seams_.begin(plan.seams, plan.projects() ? 0 : plan.h);
+    sliders_.begin(plan.sliders, !plan.projects());
     departures_.begin();
     store_.begin(x, v, plan, team);
     store_.accelerate(gravity, force);
@@ -140,6 +142,7 @@ class StoredSmallSteps final : public SmallSteps {
     return contact_times_.timed(&ContactMs::verify, [&] { return store_.deepest_in_body(team); });
   }
   const SeamThreads& seams() const override { return seams_; }
+  const SliderThreads& sliders() const override { return sliders_; }
   void report_bodies(BodyReport& report) override { store_.bodies().sum(report); }
   void read_contacts(std::vector<BodyTouch>& contacts) override {
     if (store_.bodies().empty()) return;
@@ -174,7 +177,7 @@ class StoredSmallSteps final : public SmallSteps {
   double take_contact_visits() override { return store_.bodies().take_visits(); }
   ContactMs take_contact_ms() override { return contact_times_.take(); }
   std::size_t bytes() const override {
-    return now_.bytes() + seams_.bytes() + linkage_.bytes() + store_.bytes();
+    return now_.bytes() + seams_.bytes() + sliders_.bytes() + linkage_.bytes() + store_.bytes();
   }
 
  private:
@@ -192,6 +195,7 @@ class StoredSmallSteps final : public SmallSteps {
     store_.sweep_membrane(team);
     if (layout_.has_single_constraints() || !layout_.has_yarns()) store_.hold_anchors(team);
     draw_seams();
+    hold_sliders();
     hold_bodies(team);
     now_.is_begun = true;
   }
@@ -206,6 +210,7 @@ class StoredSmallSteps final : public SmallSteps {
         .laws = now_.law_step()};
     const LocalWork work = now_.passes.run(points, contacts, limits);
     draw_seams();
+    hold_sliders();
     hold_by_meshes(team);
     return work;
   }
@@ -237,6 +242,10 @@ class StoredSmallSteps final : public SmallSteps {
     if (seams_.empty()) return;
     Points points = store_.points(false);
     seams_.draw(points, time_of_seams(), !now_.is_begun);
+  }
+  void hold_sliders() {
+    if (sliders_.empty()) return;
+    sliders_.hold(store_.points(false), !now_.is_begun);
   }
   double time_of_seams() const { return 1 / now_.law_step().springs.scale; }
 
@@ -309,6 +318,7 @@ class StoredSmallSteps final : public SmallSteps {
   const SmallStepsLayout& layout_;
   Substep now_;
   SeamThreads seams_;
+  SliderThreads sliders_;
   Departures departures_;
   ContactTimes contact_times_;
   Linkage linkage_;

@@ -16,6 +16,7 @@
 #include "engine/solvers/small_steps/frame_to_do.h"
 #include "engine/solvers/small_steps/local_passes.h"
 #include "engine/solvers/small_steps/seams.h"
+#include "engine/solvers/small_steps/sliders.h"
 #include "engine/solvers/small_steps/substep_formula.h"
 #include "engine/spheres/sphere_contacts.h"
 #include "engine/turn.h"
@@ -60,6 +61,7 @@ class SmallSteps {
   virtual void end_seams() = 0;
   /// Their state after the frame, and their work (J).
   virtual const SeamThreads& seams() const = 0;
+  virtual const SliderThreads& sliders() const = 0;
   /// The effects of contacts with bodies in the frame.
   virtual void report_bodies(BodyReport& report) = 0;
   /// m, by which a particle is under the surface of a body.

@@ -82,12 +82,12 @@ void check_equal(const weft_report& c, const StepReport& r) {
                                                 r.velocity_iterations, r.visits, r.corrections});
   CHECK(std::array{c.max_strain, c.rms_strain, c.max_shear, c.max_error, c.max_penetration,
                    c.max_anchor_error, c.max_seam_gap, c.seam_work, c.motion_error, c.energy_lost,
-                   c.pin_work, c.body_work, c.friction_work, c.max_bending_error,
-                   c.untangling_work} ==
+                   c.pin_work, c.body_work, c.friction_work, c.max_bending_error, c.untangling_work,
+                   c.max_rail_gap} ==
         std::array{r.max_strain, r.rms_strain, r.max_shear, r.max_error, r.max_penetration,
                    r.max_anchor_error, r.max_seam_gap, r.seam_work, r.motion_error, r.energy_lost,
-                   r.pin_work, r.body_work, r.friction_work, r.max_bending_error,
-                   r.untangling_work});
+                   r.pin_work, r.body_work, r.friction_work, r.max_bending_error, r.untangling_work,
+                   r.max_rail_gap});
   CHECK(std::array{c.worst_constraint, c.worst_element, c.failed_particle, c.passed_particle,
                    c.worst_seam, c.worst_held} == std::array{r.worst_constraint, r.worst_element,
                                                              r.failed_particle, r.passed_particle,
@@ -426,6 +426,25 @@ TEST_CASE("seams that are released and closed") {
   step_both(b, 0.01);
   REQUIRE(b.cpp.close_seams({seams, 1}));
   REQUIRE(weft_close_seams(b.c.get(), 1, seams) == WEFT_OK);
+  step_both(b, 0.01);
+}
+
+TEST_CASE("sliders, and a shape at rest that changes") {
+  SceneDescription scene = scene_of("hang", 8);
+  const auto first = static_cast<std::uint32_t>(scene.positions.size());
+  for (const double x : {-1., 2.}) {
+    scene.positions.push_back({x, scene.positions[60].y, scene.positions[60].z});
+    scene.masses.push_back(1);
+    scene.fixed.push_back(first + (x > 0));
+    scene.rail_particles.push_back(first + (x > 0));
+  }
+  scene.sliders = {{60, 0, 1, 0.2}};
+  Both b = both(scene, {});
+  step_both(b, 0.01);
+  const c_interface::SceneArrays arrays = c_interface::arrays_of(scene);
+  const weft_scene in_c = c_interface::scene_of(scene, arrays);
+  REQUIRE(b.cpp.set_rest_shape(scene, 1.01));
+  REQUIRE(weft_set_rest_shape(b.c.get(), &in_c, 1.01) == WEFT_OK);
   step_both(b, 0.01);
 }
 

@@ -463,12 +463,12 @@ TEST_CASE("the format is the one of its version") {
                 static_cast<unsigned long long>(checksum(state)), model.size(),
                 static_cast<unsigned long long>(checksum(model)));
   }
-  CHECK(state[8] == std::byte{7});
-  CHECK(model[8] == std::byte{9});
-  CHECK(state.size() == 11171);
-  CHECK(checksum(state) == 0xb8d9c920242a27e5);
-  CHECK(model.size() == 748);
-  CHECK(checksum(model) == 0x87a59a3e3142eb52);
+  CHECK(state[8] == std::byte{9});
+  CHECK(model[8] == std::byte{10});
+  CHECK(state.size() == 11188);
+  CHECK(checksum(state) == 0x6ba101b50d69b87c);
+  CHECK(model.size() == 764);
+  CHECK(checksum(model) == 0x59ab636687469972);
 }
 
 }  // namespace

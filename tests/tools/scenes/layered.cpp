@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kTwoPi = 6.283185307179586;
 
-constexpr std::string_view kLayered[] = {"tunic", "stack",  "fold",   "curtain",
+constexpr std::string_view kLayered[] = {"rings", "tunic",  "stack",  "fold",  "curtain",
                                          "twist", "ribbon", "funnel", "outfit"};
 
 Scene layered(std::string_view name, int size = 20) {

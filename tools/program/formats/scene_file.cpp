@@ -69,6 +69,8 @@ void read_key(const std::string& key, const Json& json, SceneDescription& scene)
     scene.masses = read_array(json, key, read_number);
   } else if (key == "fixed") {
     scene.fixed = read_array(json, key, read_index);
+  } else if (key == "rail_particles") {
+    scene.rail_particles = read_array(json, key, read_index);
   } else if (key == "surface") {
     scene.surface = read_array(json, key, read_triangle);
   } else if (key == "spheres") {
@@ -159,6 +161,7 @@ std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>
   add_numbers(text, "masses", scene.masses);
   add_numbers(text, "fixed", scene.fixed);
   text += parts_text(scene);
+  add_numbers(text, "rail_particles", scene.rail_particles);
   add_rows(text, "surface", scene.surface, [](const auto& t) { return Json(t).dump(); });
   if (scene.surface.empty() && !faces.empty()) text += ",\n\"surface\": []";
   add_numbers(text, "spheres", scene.spheres);

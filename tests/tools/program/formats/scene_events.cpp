@@ -163,5 +163,52 @@ TEST_CASE("a run that is resumed, replayed or goes on from its last state has th
   }
 }
 
+/// A chain of 1 m that hangs, and grows to 1.5 m from 0.25 s to 1 s.
+std::string growing_scene(const TemporaryFolder& folder) {
+  SceneDescription scene;
+  for (std::uint32_t i = 0; i <= 10; ++i) {
+    scene.positions.push_back({0, -0.1 * i, 0});
+    scene.masses.push_back(0.01);
+    if (i > 0) scene.constraints.push_back({i - 1, i, 0.1});
+  }
+  scene.fixed = {0};
+  return folder.write("growing.json", scene_text(scene, {}, {}, {}, {}, {{0.25, 1}, {1, 1.5}}));
+}
+
+TEST_CASE("cloth of a file grows by its times, at any frame rate, resumed or gone on with, too") {
+  for (const int rate : {32, 64, 256}) {
+    CAPTURE(rate);
+    const TemporaryFolder folder;
+    const std::string last = folder.file("last.json"), state = folder.file("state.weft");
+    const std::string rest = folder.file("rest.json");
+    const auto lowest = [](const std::string& file) {
+      return -read_scene_file(file).value().description.positions.back().y;
+    };
+    const std::string dt = " --dt 1/" + std::to_string(rate) + " --steps ";
+    const std::string run = growing_scene(folder) + dt, half = std::to_string(rate / 2);
+    const auto whole = report_of(folder, run + std::to_string(rate));
+    report_of(folder, run + half + " --save " + state + " --out " + last);
+    CHECK(lowest(last) == doctest::Approx(1 + 0.5 / 3).epsilon(0.012));
+    const auto resumed = report_of(folder, run + std::to_string(rate) + " --resume " + state);
+    CHECK(resumed["state_hash"] == whole["state_hash"]);
+    report_of(folder, last + dt + half + " --out " + rest);
+    CHECK(lowest(rest) == doctest::Approx(1.5).epsilon(0.012));
+  }
+}
+
+TEST_CASE("rails and sliders survive writing and reading") {
+  SceneDescription scene = hanging_scene();
+  scene.rail_particles = {0, 1, 2, 0};
+  scene.sliders = {{3, 0, 3, 1.0 / 3}, {4, 1, 2, 0}};
+  const std::string text = scene_text(scene);
+  const auto again = parse_scene(text);
+  REQUIRE(again);
+  CHECK(scene_text(again.value().description) == text);
+  CHECK(again.value().description.rail_particles == scene.rail_particles);
+  REQUIRE(again.value().description.sliders.size() == 2);
+  CHECK(again.value().description.sliders[0].friction == 1.0 / 3);
+  CHECK(again.value().description.sliders[1].last == 2);
+}
+
 }  // namespace
 }  // namespace weft::tools
