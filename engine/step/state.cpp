@@ -142,6 +142,16 @@ void State::take(LastingState&& from, const Settings& its) {
   if (!same || !settings.sleep) rest.wake();
 }
 
+namespace {
+
+/// Another shape at rest is seen at once; a fingerprint takes longer than a frame of calm cloth.
+bool are_different(const Model& a, const Model& b) {
+  return a.constraints.rest_length != b.constraints.rest_length ||
+         a.membrane.rest != b.membrane.rest || fingerprint(a) != fingerprint(b);
+}
+
+}  // namespace
+
 void State::go_on_from(const State& from) {
   const Model& its_model = *from.model;
   LastingState next = from;
@@ -163,7 +173,7 @@ void State::go_on_from(const State& from) {
   next.pins.go_on_from(from.pins, its_model, *model, next.position);
   next.anchors.tie(model->anchors, next.position);
   next.rest = rest;
-  if (fingerprint(*model) != fingerprint(its_model)) next.lengthening = {};
+  if (are_different(*model, its_model)) next.lengthening = {};
   take(std::move(next), from.settings);
   displaced = true;
   rests_differ = rests_differ || fast_rest_differs(*model, its_model, settings.tolerance);
