@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/measure/state_measure.h"
 #include "engine/step/motion.h"
@@ -101,7 +102,8 @@ double guard_springs(State& s, double lost, double released, double h,
   const double stored = lost * std::exp(-h / tuning::kSpringTime);
   const double gain = gained_energy(s, change, h) - released;
   take_energy(s, gain - stored, h, change);
-  return std::max(0.0, stored - gain);
+  // What flies at 1e154 m/s has more energy than a number holds.
+  return std::min(std::max(0.0, stored - gain), std::numeric_limits<double>::max());
 }
 
 }  // namespace weft

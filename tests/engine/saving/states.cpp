@@ -128,30 +128,38 @@ void direct(const RandomCase& c, int step, Cloth& cloth) {
   if (step == 1) REQUIRE(cloth.carry({.translation = random.in_box(way)}, 0.5));
 }
 
+void check_saved_between_calls(const RandomCase& c) {
+  INFO(text(c));
+  Cloth cloth = start(c);
+  add_bodies(c, cloth);
+  const int saved_at = static_cast<int>(c.seed % 3);
+  for (int k = 0; k < saved_at; ++k) {
+    direct(c, k, cloth);
+    step(cloth, c.frame(k));
+  }
+  if (c.seed % 2 == 0) direct(c, saved_at, cloth);  // on their way
+  const Bytes bytes = cloth.save_state();
+  Cloth other = cloth_of(c.scene, c.settings);
+  load(other, bytes);
+  CHECK(other.save_state() == bytes);
+  for (int k = saved_at; k < saved_at + 3; ++k) {
+    for (Cloth* each : {&cloth, &other}) {
+      if (k > saved_at || c.seed % 2 != 0) direct(c, k, *each);
+    }
+    CHECK(bits_of(step(other, c.frame(k))) == bits_of(step(cloth, c.frame(k))));
+    REQUIRE(other.state_hash() == cloth.state_hash());
+  }
+  CHECK(other.save_state() == cloth.save_state());
+}
+
 TEST_CASE("random cases: what is saved between two calls of any kind is loaded, bit for bit") {
-  for_each_case(1500, case_with_all, [](const RandomCase& c) {
-    INFO(text(c));
-    Cloth cloth = start(c);
-    add_bodies(c, cloth);
-    const int saved_at = static_cast<int>(c.seed % 3);
-    for (int k = 0; k < saved_at; ++k) {
-      direct(c, k, cloth);
-      step(cloth, c.frame(k));
-    }
-    if (c.seed % 2 == 0) direct(c, saved_at, cloth);  // on their way
-    const Bytes bytes = cloth.save_state();
-    Cloth other = cloth_of(c.scene, c.settings);
-    load(other, bytes);
-    CHECK(other.save_state() == bytes);
-    for (int k = saved_at; k < saved_at + 3; ++k) {
-      for (Cloth* each : {&cloth, &other}) {
-        if (k > saved_at || c.seed % 2 != 0) direct(c, k, *each);
-      }
-      CHECK(bits_of(step(other, c.frame(k))) == bits_of(step(cloth, c.frame(k))));
-      REQUIRE(other.state_hash() == cloth.state_hash());
-    }
-    CHECK(other.save_state() == cloth.save_state());
-  });
+  for_each_case(1500, case_with_all, check_saved_between_calls);
+}
+
+/// 4597: the first substep puts constraints right beside spheres. 13367: a particle is so fast that
+/// its energy, which is lost, is no number.
+TEST_CASE("random cases: states that once were not loaded, or not bit for bit") {
+  for (const std::uint32_t seed : {4597u, 13367u}) check_saved_between_calls(case_with_all(seed));
 }
 
 // ------------------------------------------------------------------------------- each solver
