@@ -94,12 +94,19 @@ bool Bodies::switch_on(std::uint32_t id, bool on) {
   return changes;
 }
 
-std::span<const TravellingBody> Bodies::travelling(double friction_of_cloth) {
+/// A body that fits between the particles of the cloth touches its edges and faces.
+const MeshShape* Bodies::mesh_of(const Entry& entry, const Gaps& gaps) {
+  const BodyShape& shape = *entry.shape;
+  if (shape.thin() == nullptr) return shape.mesh();
+  return shape.widths().fit_through(gaps, entry.thickness) ? shape.thin() : nullptr;
+}
+
+std::span<const TravellingBody> Bodies::travelling(double friction_of_cloth, const Gaps& gaps) {
   travelling_.clear();
   for (std::uint32_t id = 0; id < bodies_.size(); ++id) {
     const Entry& entry = bodies_[id];
     if (entry.shape == nullptr || !entry.is_on) continue;
-    const MeshShape* mesh = entry.shape->mesh();
+    const MeshShape* mesh = mesh_of(entry, gaps);
     const auto vertices = [&](const std::vector<kernels::Vector>& given) {
       if (mesh == nullptr) return std::span<const kernels::Vector>{};
       return std::span<const kernels::Vector>(given.empty() ? mesh->vertices : given);
@@ -107,12 +114,18 @@ std::span<const TravellingBody> Bodies::travelling(double friction_of_cloth) {
     travelling_.push_back({.id = id,
                            .shape = entry.shape,
                            .travel = PoseTravel(entry.from, entry.to),
+                           .mesh = mesh,
                            .from = vertices(entry.vertices_from),
                            .to = vertices(entry.vertices_to),
-                           .thickness = entry.thickness,
+                           .thickness = entry.thickness + (mesh != nullptr ? mesh->radius : 0),
                            .friction = std::sqrt(entry.friction * friction_of_cloth)});
   }
   return travelling_;
+}
+
+bool Bodies::ask_for_gaps() const {
+  return std::ranges::any_of(
+      bodies_, [](const Entry& e) { return e.shape != nullptr && e.shape->thin() != nullptr; });
 }
 
 bool Bodies::any() const {

@@ -19,9 +19,10 @@ struct TravellingBody {
   std::uint32_t id = 0;
   std::shared_ptr<const BodyShape> shape;
   PoseTravel travel;
+  const MeshShape* mesh = nullptr;                // null: particles touch its closed form
   std::span<const kernels::Vector> from{}, to{};  // of a mesh: its vertices, in its coordinates
-  double thickness = 0;
-  double friction = 0;  // with the cloth
+  double thickness = 0;                           // around its closed form, or its mesh
+  double friction = 0;                            // with the cloth
 };
 
 /// The momentum that a body gave to the cloth, and its moment about the body's centre.
@@ -46,8 +47,10 @@ class Bodies {
   /// The number of vertices of a mesh, else 0.
   std::size_t vertices(std::uint32_t id) const;
 
-  /// Those that are there; valid until one is changed.
-  std::span<const TravellingBody> travelling(double friction_of_cloth);
+  /// Those that are there; valid until one is changed. gaps: of the cloth.
+  std::span<const TravellingBody> travelling(double friction_of_cloth, const Gaps& gaps);
+  /// Whether the gaps of the cloth tell how one of them is touched.
+  bool ask_for_gaps() const;
   /// Whether there is one, on or off.
   bool any() const;
   /// Whether one of them is under way, or was in the last step, or there are other ones.
@@ -83,6 +86,8 @@ class Bodies {
               deforms, moved, load);
     }
   };
+  static const MeshShape* mesh_of(const Entry& entry, const Gaps& gaps);
+
   std::vector<Entry> bodies_;  // by id
   bool are_others_ = false;    // than in the last step
   std::vector<TravellingBody> travelling_;

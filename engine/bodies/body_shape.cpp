@@ -6,6 +6,7 @@
 #include <string>
 
 #include "engine/bodies/convex_hull.h"
+#include "engine/bodies/thin_shape.h"
 #include "engine/public_vectors.h"
 #include "engine/saving/fields.h"
 #include "engine/validation.h"
@@ -32,6 +33,13 @@ Shared build(const Plane& plane) {
       std::vector{reference::Face{(1 / l) * normal, plane.offset / l}}, std::vector<Vector>{});
 }
 
+Shared round_shape(const reference::Solid& solid) {
+  auto shape = std::make_shared<BodyShape>(solid);
+  const double width = 2 * std::max(solid.radius, solid.radius - solid.taper * solid.length);
+  shape->set_thin(thin_capsule(solid), {.least = width, .most = width + solid.length});
+  return shape;
+}
+
 Shared build(const Capsule& capsule) {
   for (const auto& [field, at] : {std::pair{"a", capsule.a}, std::pair{"b", capsule.b}}) {
     if (auto r = validate_finite(field, at); !r) return Error{r.error()};
@@ -51,14 +59,13 @@ Shared build(const Capsule& capsule) {
     solid.a = to_internal(capsule.b);
     solid.radius = capsule.radius_b;
   }
-  return std::make_shared<BodyShape>(solid);
+  return round_shape(solid);
 }
 
 Shared build(const Ball& ball) {
   if (auto r = validate_finite("centre", ball.centre); !r) return Error{r.error()};
   if (auto r = validate_positive("radius", ball.radius); !r) return Error{r.error()};
-  return std::make_shared<BodyShape>(
-      reference::Solid{.a = to_internal(ball.centre), .radius = ball.radius});
+  return round_shape({.a = to_internal(ball.centre), .radius = ball.radius});
 }
 
 /// Triangles in one plane have one face.
@@ -87,7 +94,11 @@ Shared build(const Hull& hull) {
     return refuse("points", "must be four or more that are not in a plane",
                   std::to_string(points.size()));
   }
-  return std::make_shared<BodyShape>(std::move(faces), std::move(points));
+  MeshShape thin = thin_hull(points);
+  const Widths widths = widths_of(faces, points);
+  auto shape = std::make_shared<BodyShape>(std::move(faces), std::move(points));
+  shape->set_thin(std::move(thin), widths);
+  return shape;
 }
 
 bool has_three_corners(const TriangleSurface::Triangle& t) {
@@ -117,17 +128,6 @@ Result<void> validate_sides(const TriangleMesh& mesh) {
                   std::to_string(sides[i - 1][2]));
   }
   return {};
-}
-
-BoxTree tree_of(const MeshShape& mesh) {
-  BoxTree tree(mesh.surface.in_order);
-  tree.refit([&](std::uint32_t triangle) {
-    Box box = Box::none();
-    for (const std::uint32_t corner : mesh.surface.triangles[triangle])
-      box.add(Box::at(mesh.vertices[corner]));
-    return box;
-  });
-  return tree;
 }
 
 Shared build(const TriangleMesh& mesh) {

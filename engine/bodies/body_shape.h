@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/bodies/mesh_shape.h"
+#include "engine/gaps.h"
 #include "engine/saving/archive.h"
 #include "kernels/reference/bodies.h"
 
@@ -29,6 +30,13 @@ class BodyShape {
 
   /// Null: it is none, but solid().
   const MeshShape* mesh() const { return mesh_.get(); }
+  /// The surface that solid() is for cloth whose gaps it fits through; null: it is none.
+  const MeshShape* thin() const { return thin_.get(); }
+  const Widths& widths() const { return widths_; }
+  void set_thin(MeshShape thin, const Widths& widths) {
+    thin_ = std::make_unique<const MeshShape>(std::move(thin));
+    widths_ = widths;
+  }
   /// The shape that it was built of.
   const ShapeDescription& description() const { return description_; }
   void describe(const ShapeDescription& description) { description_ = description; }
@@ -52,7 +60,8 @@ class BodyShape {
   double radius_ = 0;
   double spread_ = 1;
   reference::Solid solid_;
-  std::unique_ptr<const MeshShape> mesh_;
+  std::unique_ptr<const MeshShape> mesh_, thin_;
+  Widths widths_;
   ShapeDescription description_;
 };
 

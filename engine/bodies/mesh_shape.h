@@ -13,7 +13,9 @@ namespace weft {
 struct MeshShape {
   std::vector<kernels::Vector> vertices{};
   TriangleSurface surface{};
-  BoxTree tree{};  // of its triangles
+  BoxTree tree{};               // of its triangles
+  std::vector<double> radii{};  // m, per vertex: what is solid reaches so far around; empty: 0
+  double radius = 0;            // m, the largest of them
   bool two_sided = false;
   bool is_open = false;  // it has a border
 };

@@ -17,6 +17,7 @@ struct Encounter {
   kernels::Vector normal;    // from the second feature to the first, where both were on their sides
   double gap = 0;            // m
   reference::Yield yield{};  // of the body
+  kernels::Vector arm{};     // m, from the body's feature to its surface
   bool is_under = false;     // one is on the wrong side of the other
   bool pushes = false;
 

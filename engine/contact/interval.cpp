@@ -221,9 +221,10 @@ void SurfaceContacts::read_touching(const ContactParticles& particles, const Bod
       const auto four = near.list.points(i);
       const reference::Nearest found =
           nearest(pair.kind, {at(four[0]), at(four[1]), at(four[2]), at(four[3])});
-      BodyTouch touch{.body = clock.bodies()[points_.later(pair).body].id,
-                      .push = near.states[i].push};
+      const ContactSurface& later = points_.later(pair);
+      BodyTouch touch{.body = clock.bodies()[later.body].id, .push = near.states[i].push};
       touch.normal = pair.outward() * near.normal(i);
+      touch.point = later.radius_at(four, found.weight) * touch.normal;
       double most = -1;
       for (std::size_t k = 0; k < 4; ++k) {
         const double weight = std::abs(found.weight[k]);

@@ -85,22 +85,26 @@ struct Look {
   bool is_apart() const { return distance > kTouching; }
 };
 
-/// The normal of the later surface where they touch, that of a triangle if there is none. For two
-/// edges that are in no face: one that is across both.
+/// The normal of the later surface where they touch, that of a triangle if there is none. Where
+/// that is in no face: one that is across both features.
 inline kernels::Vector normal_where_touching(ContactSurface& later, const Pair& pair,
                                              const reference::Nearest& nearest,
                                              const FourPoints& x) {
   kernels::Vector n = side_normal(later, pair, nearest);
   if (dot(n, n) == 0) {
+    const auto first_or_none = [](auto&& list) { return list.empty() ? kNoIndex : list[0]; };
     const TriangleSurface& surface = *later.triangles;
     std::uint32_t triangle = pair.second;
     if (pair.kind == PairKind::edges)
-      triangle = surface.triangles_at[surface.edges[pair.second][0]][0];
+      triangle = first_or_none(surface.triangles_at[surface.edges[pair.second][0]]);
     else if (pair.is_turned())
-      triangle = surface.triangles_at[pair.first][0];
-    n = later.normals.of_triangle(triangle);
+      triangle = first_or_none(surface.triangles_at[pair.first]);
+    if (triangle != kNoIndex) n = later.normals.of_triangle(triangle);
   }
-  if (dot(n, n) == 0 && pair.kind == PairKind::edges) n = cross(x[1] - x[0], x[3] - x[2]);
+  if (dot(n, n) == 0) {
+    n = pair.kind == PairKind::edges ? cross(x[1] - x[0], x[3] - x[2])
+                                     : cross(x[2] - x[1], x[3] - x[1]);
+  }
   return pair.outward() * kernels::direction(n, length(n));
 }
 

@@ -56,7 +56,7 @@ void ContactPoints::begin(const BodyClock& clock) {
   const std::size_t count_before = surfaces_.size();
   bool has_other_places = start_.capacity() == 0;
   for (std::size_t body = 0; body < clock.bodies().size(); ++body) {
-    if (clock.bodies()[body].shape->mesh() == nullptr) continue;
+    if (clock.bodies()[body].mesh == nullptr) continue;
     add_cloth();
     ContactSurface& surface = surface_for(clock, body, count);
     if (std::exchange(surface.first_point, static_cast<std::uint32_t>(points)) != points) {
@@ -128,14 +128,15 @@ ContactSurface& ContactPoints::surface_for(const BodyClock& clock, std::size_t b
   const TravellingBody& b = clock.bodies()[body];
   if (place == surfaces_.size()) surfaces_.emplace_back();
   ContactSurface& surface = surfaces_[place];
-  if (surface.shape != b.shape) {
-    const MeshShape& mesh = *b.shape->mesh();
+  if (surface.shape != b.shape || surface.mesh != b.mesh) {
+    const MeshShape& mesh = *b.mesh;
     surface.triangles = &mesh.surface;
     surface.two_sided = mesh.two_sided;
     surface.is_open = mesh.is_open;
     surface.own_tree = {};
     surface.active.make_room(mesh.surface.triangles.size());
     surface.shape = b.shape;
+    surface.mesh = b.mesh;
     surface.is_rigid = false;
     surface.placing = 0;
   }
@@ -148,7 +149,7 @@ ContactSurface& ContactPoints::surface_for(const BodyClock& clock, std::size_t b
 }
 
 void ContactPoints::take_vertices(ContactSurface& surface, const TravellingBody& body) {
-  const Vector* of_shape = surface.shape->mesh()->vertices.data();
+  const Vector* of_shape = surface.mesh->vertices.data();
   const bool is_rigid = body.from.data() == of_shape && body.to.data() == of_shape;
   surface.from = body.from;
   surface.to = body.to;

@@ -131,9 +131,19 @@ double weight_of(const ContactScene& scene, const Encounter& e) {
   return weight > 0 ? std::max(weight, least_weight(scene.points, e.points)) : 0;
 }
 
+/// The motion of a body's surface beside that of its feature, which is in the middle of what is
+/// round: by its turn in the substep (m), and its spin (m/s).
+Vector turn_of_arm(const ContactScene& scene, const Encounter& e, const Pair& pair) {
+  const reference::BodyMotion& body = scene.clock.motions()[scene.points.later(pair).body];
+  return e.arm - body.from.turned(body.to.turned_back(e.arm));
+}
+Vector speed_of_arm(const ContactScene& scene, const Encounter& e, const Pair& pair) {
+  return cross(scene.clock.motions()[scene.points.later(pair).body].spin, e.arm);
+}
+
 /// The velocity of the first feature beside the second.
-Vector relative_velocity(const ContactScene& scene, const Encounter& e) {
-  Vector relative{};
+Vector relative_velocity(const ContactScene& scene, const Encounter& e, const Pair& pair) {
+  Vector relative = -pair.outward() * speed_of_arm(scene, e, pair);
   for (std::size_t k = 0; k < 4; ++k)
     relative = relative + e.nearest.weight[k] * scene.points.present(e.points[k]).v;
   return relative;
@@ -152,8 +162,10 @@ Encounter Response::meet(const ContactScene& scene, const NearPairs& near, std::
   Encounter e;
   e.points = near.list.points(i);
   for (std::size_t k = 0; k < 4; ++k) e.x[k] = scene.points.present(e.points[k]).x;
-  const double thickness = near.states[i].thickness;
   e.nearest = nearest(pair.kind, e.x);
+  const ContactSurface& later = scene.points.later(pair);
+  const double radius = later.radius_at(e.points, e.nearest.weight);
+  const double thickness = near.states[i].thickness - (later.largest_radius() - radius);
   const Vector side = near.normal(i);
   const double l = length(e.nearest.r);
   const Vector direct = l > kTouching ? (1 / l) * e.nearest.r : side;
@@ -163,7 +175,8 @@ Encounter Response::meet(const ContactScene& scene, const NearPairs& near, std::
   }
   e.normal = e.is_under ? -1.0 * direct : direct;
   e.gap = (e.is_under ? -l : l) - thickness;
-  e.yield = scene.yield(e.points, e.nearest.weight, scene.points.later(pair).body);
+  e.arm = (pair.outward() * radius) * e.normal;
+  e.yield = scene.yield(e.points, e.nearest.weight, later.body);
   if (!(e.gap + e.yield.by < 0) || !is_in_place(pair.kind, e.nearest)) return e;
   const Vector seen = pair.kind == PairKind::edges ? e.normal : direct;
   e.pushes = !is_ghost(scene.points.surfaces(), pair, e.x, e.nearest, seen, tuning::kTouchLean,
@@ -180,7 +193,7 @@ bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i)
   if (!e.pushes) return false;
   read_start(scene.points, e);
   if (!(weight_of(scene, e) > 0)) return false;
-  Vector slip{};
+  Vector slip = -pair.outward() * turn_of_arm(scene, e, pair);
   for (std::size_t k = 0; k < 4; ++k) slip = slip + e.nearest.weight[k] * (e.x[k] - e.start[k]);
   state.grip.yield = e.yield;
   const ContactSurface& later = scene.points.later(pair);
@@ -190,7 +203,7 @@ bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i)
   state.is_touching = true;
   state.push += stop.push;
   push(scene, e, pair, stop,
-       reference::slow(e.normal, relative_velocity(scene, e), later.friction, scene.clock.h(),
+       reference::slow(e.normal, relative_velocity(scene, e, pair), later.friction, scene.clock.h(),
                        state.grip));
   return true;
 }
@@ -208,7 +221,7 @@ void Response::give_back(const ContactScene& scene, Near& near) const {
     const Encounter e = meet(scene, near[list], i);
     const double back = std::min(e.gap + e.yield.by, grip.pushed), weight = weight_of(scene, e);
     if (!(back > 0) || !(weight > 0)) continue;
-    const double apart = dot(relative_velocity(scene, e), e.normal),
+    const double apart = dot(relative_velocity(scene, e, near[list].list.pairs[i]), e.normal),
                  slower = std::clamp(apart, 0.0, grip.stopped);
     grip.pushed -= back;
     grip.stopped -= slower;
@@ -243,8 +256,8 @@ void Response::push(const ContactScene& scene, const Encounter& e, const Pair& p
                     const reference::Stop& stop, const reference::Slowed& slow) {
   const ContactSurface& later = scene.points.later(pair);
   const double weight = weight_of(scene, e);
-  TouchedSurface surface{.body = later.body};
-  Vector on_body{};
+  TouchedSurface surface{.body = later.body, .velocity = speed_of_arm(scene, e, pair)};
+  Vector on_body = e.arm;
   for (std::size_t k = 0; k < 4; ++k) {
     if (scene.points.is_of_cloth(e.points[k])) continue;
     const double outward = pair.outward() * e.nearest.weight[k];
@@ -306,7 +319,9 @@ double Response::deepest(const ContactScene& scene, Near& near, Team& team) {
     for (std::size_t block = 0; block < touching_[list].size(); ++block) {
       for_each_lane(block, touching_[list][block], [&](std::size_t i) {
         const Encounter e = meet(scene, near[list], i);
-        const double spared = std::min(e.yield.by, near[list].states[i].thickness);
+        const double spared =
+            std::min(e.yield.by, near[list].states[i].thickness -
+                                     scene.points.later(near[list].list.pairs[i]).largest_radius());
         if (e.pushes) deepest = std::max(deepest, -e.gap - spared);
       });
     }

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "engine/contact/look.h"
-#include "engine/contact/rest_lengths.h"
 #include "engine/erase_repeated.h"
+#include "engine/model/rest_lengths.h"
 #include "engine/tuning.h"
 
 namespace weft {

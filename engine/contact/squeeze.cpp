@@ -14,7 +14,7 @@ using kernels::Vector;
 namespace {
 
 bool is_closed_form(const ContactScene& scene, std::uint32_t body) {
-  return scene.clock.bodies()[body].shape->mesh() == nullptr;
+  return scene.clock.bodies()[body].mesh == nullptr;
 }
 
 }  // namespace
@@ -119,10 +119,12 @@ Squeeze::Seen Squeeze::see(const ContactScene& scene, const NearPairs& near, std
   const Vector side = near.normal(i);
   const double l = length(found.r), sign = dot(found.r, side) >= 0 ? 1 : -1;
   const Vector n = l > kTouching ? (sign / l) * found.r : side;
-  seen.claim = {.body = scene.points.later(pair).body,
+  const ContactSurface& later = scene.points.later(pair);
+  seen.radius = later.radius_at(seen.points, found.weight);
+  seen.claim = {.body = later.body,
                 .normal = pair.outward() * n,
-                .distance = sign * l,
-                .thickness = near.states[i].thickness};
+                .distance = sign * l - seen.radius,
+                .thickness = near.states[i].thickness - later.largest_radius()};
   for (std::size_t k = 0; k < 4; ++k) {
     const double weight = seen.weight[k] = std::abs(found.weight[k]);
     if (scene.points.is_of_cloth(seen.points[k])) {
@@ -157,7 +159,7 @@ Claim Squeeze::claim_at(const ContactScene& scene, const Seen& of, Vector at) {
   const Vector r = from_nearest(at, std::span(corners).first(count));
   const double l = length(r), sign = dot(r, of.claim.normal) >= 0 ? 1 : -1;
   Claim claim = of.claim;
-  claim.distance = sign * l;
+  claim.distance = sign * l - of.radius;
   if (l > kTouching) claim.normal = (sign / l) * r;
   return claim;
 }
@@ -230,7 +232,8 @@ void Squeeze::take_in(const ContactScene& scene, const Near& near, Tangles& tang
   for (const Place& place : pairs_) {
     const NearPairs& pairs = near[place.list];
     const Pair& pair = pairs.list.pairs[place.pair];
-    const double thickness = pairs.states[place.pair].thickness;
+    const double thickness =
+        pairs.states[place.pair].thickness - scene.points.later(pair).largest_radius();
     const auto points = pairs.list.points(place.pair);
     const bool lets_in = std::ranges::any_of(points, [&](std::uint32_t point) {
       return scene.points.is_of_cloth(point) &&

@@ -44,6 +44,7 @@ class Squeeze {
     std::array<double, 4> weight{};
     kernels::Vector at{};  // of the cloth, where both are nearest
     Claim claim{};
+    double radius = 0;  // m, of the body around its feature
     bool is_in_place = false;
   };
   struct OfSlot {

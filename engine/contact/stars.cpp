@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "engine/bytes_of.h"
-#include "engine/contact/rest_lengths.h"
 #include "engine/erase_repeated.h"
+#include "engine/model/rest_lengths.h"
 #include "engine/tuning.h"
 
 namespace weft {

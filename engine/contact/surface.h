@@ -3,6 +3,8 @@
 
 #include <weft/scene.h>
 
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -28,7 +30,8 @@ struct ContactSurface {
   bool is_open = true;  // it has a border: what is not inside may be on either side
   BoxTree own_tree;     // of its triangles, around tubes: of what is not rigid
   // Of a body:
-  std::shared_ptr<const BodyShape> shape;  // keeps its triangles
+  std::shared_ptr<const BodyShape> shape;  // keeps its mesh
+  const MeshShape* mesh = nullptr;
   SideNormals normals;
   bool is_rigid = false;                          // its vertices are those of its shape
   bool stands = false;                            // besides, it does not move in this step
@@ -41,8 +44,22 @@ struct ContactSurface {
   SparseArray<std::uint32_t> active;    // per triangle: the laying of tubes since which it is
   std::vector<std::uint8_t> may_cross;  // per triangle of the cloth: tubes of both meet
 
+  /// m, of what is solid around its triangles at most: a part of the thickness.
+  double largest_radius() const { return mesh == nullptr ? 0 : mesh->radius; }
+  /// The same where points of a pair count by these weights.
+  double radius_at(const std::array<std::uint32_t, 4>& points,
+                   const std::array<double, 4>& weights) const {
+    if (mesh == nullptr || mesh->radii.empty()) return 0;
+    double radius = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::uint32_t vertex = points[k] - first_point;
+      if (points[k] >= first_point && vertex < mesh->radii.size())
+        radius += std::abs(weights[k]) * mesh->radii[vertex];
+    }
+    return radius;
+  }
   /// The tree of a rigid body is around triangles, in coordinates of the body.
-  const BoxTree& tree() const { return is_rigid ? shape->mesh()->tree : own_tree; }
+  const BoxTree& tree() const { return is_rigid ? mesh->tree : own_tree; }
   /// A box of the world as the tree has it.
   Box as_in_tree(const Box& box) const { return is_rigid ? seen(box) : box; }
   Box as_in_tree(const Tube& tube) const { return is_rigid ? seen(tube) : tube.all(); }

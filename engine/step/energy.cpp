@@ -102,7 +102,7 @@ double guard_springs(State& s, double lost, double released, double h,
   const double stored = lost * std::exp(-h / tuning::kSpringTime);
   const double gain = gained_energy(s, change, h) - released;
   take_energy(s, gain - stored, h, change);
-  // What flies at 1e154 m/s has more energy than a number holds.
+  // A particle at 1e154 m/s has more energy than a number holds.
   return std::min(std::max(0.0, stored - gain), std::numeric_limits<double>::max());
 }
 

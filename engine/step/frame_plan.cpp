@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/model/rest_lengths.h"
 #include "engine/solvers/small_steps/fold_length.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/solvers/small_steps/small_steps_load.h"
@@ -89,8 +90,15 @@ double passes_beyond(int substeps, double automatic_substeps) {
   return std::max(tuning::kPassesBeyond * substeps, missing);
 }
 
+/// Particles that are spheres touch closed forms alone.
+Gaps gaps_of(State& s) {
+  if (!s.bodies.ask_for_gaps() || s.model->has_spheres()) return {};
+  if (!s.gaps) s.gaps = widest_gaps(*s.model);
+  return *s.gaps;
+}
+
 void add_bodies(State& s, FramePlan& plan) {
-  plan.bodies = s.bodies.travelling(s.model->friction);
+  plan.bodies = s.bodies.travelling(s.model->friction, gaps_of(s));
   plan.bodies_move = s.bodies.moving();
   plan.bodies_are_new = s.bodies.are_others();
 }

@@ -157,7 +157,8 @@ struct State : LastingState {
   SphereContacts contacts;
   NearbySpherePairs nearby;  // of the present frame of small steps
   CoplanarLayers coplanar_layers;
-  BodyReport body_report;  // of the present attempt by small steps
+  std::optional<Gaps> gaps;  // of the cloth, once a body asks for them
+  BodyReport body_report;    // of the present attempt by small steps
 
   std::vector<kernels::ImpulseEnergy> impulses;  // per stretch of slots
   kernels::AlignedVector<double>

@@ -17,6 +17,13 @@
 /// predicts where particles go; tests/README.md says which bodies are too fast for that. An edge or
 /// a corner of a body between the particles of a coarse cloth is not seen.
 ///
+/// A ball, capsule or hull that fits between the particles of the cloth touches the whole surface
+/// of the cloth, as a triangle mesh does, and costs as much. It fits where its greatest width
+/// is less than 2/sqrt(3) of the longest side of a triangle of the cloth, or its width is less
+/// than half of the largest height of a triangle, as rods and blades are. Both are at rest, and
+/// of a thread they are its length. Its thickness counts, on both sides. The width of a capsule is
+/// that of its wider end. The edges of a hull are round then, and a capsule pushes across its axis.
+///
 /// Triangle meshes touch the whole surface of the cloth (SceneDescription::surface): particles
 /// against triangles both ways, and edges against edges. Every 2 ms each pair that may have met is
 /// verified, more often if the mesh is fast, and less often if it is slow and stands alone. So a
@@ -65,7 +72,7 @@ struct Capsule {
 };
 /// The convex hull of at least four points that are not in one plane. Each particle near a hull is
 /// compared with all faces of the hull: give it tens of faces, not thousands. The thickness is
-/// added to the faces, so the thick hull has sharp edges and corners.
+/// added to the faces, so the thick hull has sharp edges and corners, unless it is thin.
 struct Hull {
   std::vector<Vec3> points;
 };

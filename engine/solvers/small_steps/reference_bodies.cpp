@@ -44,7 +44,7 @@ void ReferenceBodies::share_room(ContactParticles& particles) {
     for (const Room::Entry& entry : room->entries()) {
       reference::Yield& yield = grips_[entry.slot * clock_.bodies().size() + entry.body].yield;
       if (entry.yield.by > yield.by) yield = entry.yield;
-      if (clock_.bodies()[entry.body].shape->mesh() == nullptr) on_[entry.slot] = true;
+      if (clock_.bodies()[entry.body].mesh == nullptr) on_[entry.slot] = true;
     }
   }
 }
@@ -58,7 +58,7 @@ void ReferenceBodies::share_among_forms(ContactParticles& particles, const Touch
         when == SubstepMoment::start ? particles.start(slot) : particles.position(slot);
     claims_.clear();
     for (std::size_t body = 0; body < clock_.bodies().size(); ++body) {
-      if (clock_.bodies()[body].shape->mesh() == nullptr)
+      if (clock_.bodies()[body].mesh == nullptr)
         claims_.push_back(claim_of(clock_, body, x, radius(slot), when));
     }
     among_forms_.share(claims_, clock_.h(), slot);
@@ -81,7 +81,7 @@ void ReferenceBodies::find_standing(ContactParticles& particles, Team& team) {
 double ReferenceBodies::clear_of(std::uint32_t slot, Vector start, Vector x) const {
   double clear = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < clock_.bodies().size(); ++i) {
-    if (clock_.bodies()[i].shape->mesh() == nullptr)
+    if (clock_.bodies()[i].mesh == nullptr)
       clear = std::min(clear, reference::clear_of(clock_.motions()[i], start, x, radius(slot)));
   }
   return clear;
@@ -93,7 +93,7 @@ TouchedSurface ReferenceBodies::hold_by(std::uint32_t slot, ContactParticle& at,
   TouchedSurface surface;
   if (model_.inverse_mass[slot] == 0) return surface;
   for (std::size_t i = 0; i < clock_.bodies().size(); ++i) {
-    if (clock_.bodies()[i].shape->mesh() != nullptr) continue;
+    if (clock_.bodies()[i].mesh != nullptr) continue;
     const reference::BodyMotion& body = clock_.motions()[i];
     reference::Grip& grip = grips_[slot * clock_.bodies().size() + i];
     const reference::Touch touch = look(body, at.start, at.x, radius(slot));
@@ -117,7 +117,7 @@ TouchedSurface ReferenceBodies::follow(std::uint32_t slot, ContactParticle& at) 
 
 Vector ReferenceBodies::kept_out(std::uint32_t slot, Vector start, Vector by) const {
   for (std::size_t i = 0; i < clock_.bodies().size(); ++i) {
-    if (clock_.bodies()[i].shape->mesh() == nullptr)
+    if (clock_.bodies()[i].mesh == nullptr)
       by = reference::kept_out(clock_.motions()[i], start, by, radius(slot));
   }
   return by;
@@ -126,7 +126,7 @@ Vector ReferenceBodies::kept_out(std::uint32_t slot, Vector start, Vector by) co
 std::pair<TouchedSurface, Vector> ReferenceBodies::nearest_surface(std::uint32_t, Vector x) const {
   NearestForm nearest;
   for (std::uint32_t body = 0; body < clock_.bodies().size(); ++body) {
-    if (clock_.bodies()[body].shape->mesh() == nullptr) nearest.consider(clock_, body, x);
+    if (clock_.bodies()[body].mesh == nullptr) nearest.consider(clock_, body, x);
   }
   return nearest.surface(clock_, x);
 }
@@ -148,7 +148,7 @@ double ReferenceBodies::deepest(const kernels::Vectors& start, const kernels::Ve
   for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) {
     if (model_.inverse_mass[slot] == 0) continue;
     for (std::size_t i = 0; i < clock_.bodies().size(); ++i) {
-      if (clock_.bodies()[i].shape->mesh() != nullptr) continue;
+      if (clock_.bodies()[i].mesh != nullptr) continue;
       const reference::BodyMotion& body = clock_.motions()[i];
       const reference::Touch touch = find_touch(body, start[slot], x[slot], radius(slot));
       if (touch.is_near) deepest = std::max(deepest, -touch.gap - spared_by(i, slot));

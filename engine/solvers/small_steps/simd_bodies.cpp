@@ -180,7 +180,7 @@ SimdBodies::Extent SimdBodies::extent_of(std::size_t block, int substeps,
 
 bool SimdBodies::may_touch(const Extent& extent, std::size_t body, const BodyClock::Box& box,
                            double time) const {
-  if (clock_.bodies()[body].shape->mesh() != nullptr || !extent.meets(box)) return false;
+  if (clock_.bodies()[body].mesh != nullptr || !extent.meets(box)) return false;
   const BodyMotion& motion = clock_.motions()[body];
   const Vector middle = extent.middle();
   const double moves =

@@ -83,7 +83,7 @@ struct Beside : Moving {
       for (Vec3& x : to) x.y *= 1.01;
       bodies.move_vertices(id, to);
     }
-    clock.begin(bodies.travelling(0.3), kH, kSubsteps, false);
+    clock.begin(bodies.travelling(0.3, {}), kH, kSubsteps, false);
     start(0.4);
   }
 };
