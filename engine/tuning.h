@@ -481,6 +481,9 @@ inline constexpr double kWovenError = 0.03;
 /// The share of warp or weft that kWovenError is measured by at least. Without it cloth that has no
 /// shear would be yarns on exact rectangles alone.
 inline constexpr double kFeltShear = 0.01;
+/// A crack goes on away from where it comes from, if the direction across the tension leads there
+/// by this share. Else, as where the tension runs along it, both directions are as good.
+inline constexpr double kLeastOpening = 0.1;
 /// Ends of a seam that are nearer than this share of a side are drawn as one. A closed seam holds
 /// them far nearer; a larger share draws an open seam as closed.
 inline constexpr double kClosedSeam = 0.05;

@@ -67,18 +67,27 @@ Result<void> build(const ShapeDescription& shape, weft_shape** out) {
   return hand_over(build_shape(shape), out);
 }
 
-/// The contacts that there is room for.
-Result<void> write_contacts(const std::vector<BodyContact>& contacts, std::size_t capacity,
-                            weft_body_contact* out) {
-  const std::size_t writable = std::min(contacts.size(), capacity);
+weft_torn torn_of(const Torn& torn) {
+  return {.size = sizeof(weft_torn),
+          .kind = static_cast<int>(torn.kind),
+          .index = torn.index,
+          .particle = torn.particle,
+          .load = torn.load};
+}
+
+/// Those of a list that there is room for. in_c: one of them as a struct.
+template <class Value, class Struct>
+Result<void> write_list(const std::vector<Value>& list, Struct (*in_c)(const Value&),
+                        std::size_t capacity, Struct* out) {
+  const std::size_t writable = std::min(list.size(), capacity);
   if (writable == 0) return {};
   if (auto r = check_struct("out", out); !r) return r;
   const std::size_t size = out->size;
   auto* bytes = reinterpret_cast<std::byte*>(out);
   for (std::size_t i = 0; i < writable; ++i) {
-    auto* contact = reinterpret_cast<weft_body_contact*>(bytes + i * size);
-    contact->size = size;
-    write_struct(contact_of(contacts[i]), contact);
+    auto* to = reinterpret_cast<Struct*>(bytes + i * size);
+    to->size = size;
+    write_struct(in_c(list[i]), to);
   }
   return {};
 }
@@ -94,6 +103,10 @@ weft_result weft_init_body(weft_body* body, size_t size) {
 
 weft_result weft_init_body_load(weft_body_load* load, size_t size) {
   return init_struct("load", load_of({}), load, size);
+}
+
+weft_result weft_init_torn(weft_torn* torn, size_t size) {
+  return init_struct("torn", torn_of({}), torn, size);
 }
 
 weft_result weft_init_body_contact(weft_body_contact* contact, size_t size) {
@@ -222,8 +235,33 @@ weft_result weft_body_contacts(const weft_cloth* cloth, size_t capacity, weft_bo
   return call([&]() -> weft::Result<void> {
     if (auto r = given({{"cloth", cloth}, {"count", count}}); !r) return r;
     const std::vector<weft::BodyContact> contacts = cloth->cloth.body_contacts();
-    if (auto r = write_contacts(contacts, capacity, out); !r) return r;
+    if (auto r = write_list(contacts, contact_of, capacity, out); !r) return r;
     *count = contacts.size();
+    return {};
+  });
+}
+
+weft_result weft_torn_of(const weft_cloth* cloth, size_t capacity, weft_torn* out, size_t* count) {
+  return call([&]() -> weft::Result<void> {
+    if (auto r = given({{"cloth", cloth}, {"count", count}}); !r) return r;
+    const std::vector<weft::Torn> torn = cloth->cloth.torn();
+    if (auto r = write_list(torn, torn_of, capacity, out); !r) return r;
+    *count = torn.size();
+    return {};
+  });
+}
+
+weft_result weft_surface_of(const weft_cloth* cloth, size_t capacity, uint32_t* out,
+                            size_t* count) {
+  return call([&]() -> weft::Result<void> {
+    if (auto r = given({{"cloth", cloth}, {"count", count}}); !r) return r;
+    const auto triangles = cloth->cloth.surface();
+    const std::size_t writable = std::min(triangles.size(), capacity);
+    if (writable > 0) {
+      if (auto r = given({{"out", out}}); !r) return r;
+    }
+    for (std::size_t i = 0; i < writable; ++i) std::ranges::copy(triangles[i], out + 3 * i);
+    *count = triangles.size();
     return {};
   });
 }

@@ -19,7 +19,8 @@ weft_material material_of(const Material& m) {
           .drag = m.drag,
           .lift = m.lift,
           .friction = m.friction,
-          .ram = m.ram};
+          .ram = m.ram,
+          .strength = m.strength};
 }
 
 }  // namespace
@@ -40,7 +41,8 @@ Result<Material> read_material(const weft_material* material) {
                   .damping_motion = m.damping_motion,
                   .drag = m.drag,
                   .lift = m.lift,
-                  .ram = m.ram};
+                  .ram = m.ram,
+                  .strength = m.strength};
 }
 
 }  // namespace weft::c_interface

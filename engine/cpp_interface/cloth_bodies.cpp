@@ -84,6 +84,17 @@ Result<BodyLoad> Cloth::body_load(std::uint32_t id) const {
   return impl_->state.bodies.load(id);
 }
 
+std::vector<Torn> Cloth::torn() const { return impl_->state.torn; }
+
+std::vector<std::array<std::uint32_t, 3>> Cloth::surface() const {
+  const Model& model = *impl_->state.model;
+  std::vector<std::array<std::uint32_t, 3>> triangles = model.surface;
+  for (auto& triangle : triangles) {
+    for (std::uint32_t& corner : triangle) corner = model.ordering.particle_at[corner];
+  }
+  return triangles;
+}
+
 std::vector<BodyContact> Cloth::body_contacts() const {
   std::vector<BodyContact> contacts;
   if (impl_->state.settings.solver != Solver::small_steps) return contacts;

@@ -1,6 +1,7 @@
 #include <weft/mesh.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 
@@ -139,6 +140,7 @@ Result<void> add_material(const MeshDescription& mesh, const Welded& welded,
   scene.constraints = std::move(fabric.springs);
   scene.constraints.insert(scene.constraints.end(), fabric.threads.begin(), fabric.threads.end());
   scene.membrane = std::move(fabric.membrane);
+  if (std::isfinite(material.strength)) scene.surface = triangles_of(fabric.parts);
   cloth.cells = std::move(fabric.cells);
   cloth.counts.thread_lines = fabric.threads.size();
   cloth.counts.recognised_quads -= fabric.cut_again;

@@ -68,6 +68,8 @@ Result<void> check_material(const Material& m) {
   for (const auto& [field, value] : from_zero) {
     if (auto r = validate_not_negative(field, value); !r) return r;
   }
+  if (!(m.strength > 0))
+    return refuse("material.strength", "must be greater than 0, or infinite", number(m.strength));
   return {};
 }
 

@@ -1,6 +1,7 @@
 #include "engine/mesh/membrane.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "engine/mesh/delaunay.h"
 #include "engine/mesh/mesh_input.h"
@@ -64,16 +65,19 @@ class Springs {
  public:
   Springs(ConstraintKind kind) : kind_(kind) {}
 
-  void add(const Face& face, std::size_t from, std::size_t to, double stiffness) {
+  /// strength: N
+  void add(const Face& face, std::size_t from, std::size_t to, double stiffness,
+           double strength = std::numeric_limits<double>::infinity()) {
     if (!(stiffness > 0)) return;
     const std::uint32_t a = face.particles[from], b = face.particles[to];
     const auto [number, is_new] = numbers_.add(a, b);
     if (is_new) {
       const double rest_length = length(face.places[from] - face.places[to]);
-      constraints_.push_back({a, b, rest_length, kind_, 1 / stiffness});
+      constraints_.push_back({a, b, rest_length, kind_, 1 / stiffness, strength});
     } else {
-      double& compliance = constraints_[number].compliance;
-      compliance = 1 / (1 / compliance + stiffness);
+      Constraint& spring = constraints_[number];
+      spring.compliance = 1 / (1 / spring.compliance + stiffness);
+      spring.strength += strength;
     }
   }
   void set_kind(ConstraintKind kind) { kind_ = kind; }
@@ -89,10 +93,12 @@ class Springs {
 /// the fraction e with the energy k e^2 / 2 per area.
 double spring(double k, double area, double length) { return k * area / square(length); }
 
-void add_sides(const Face& quad, const WovenCell& cell, Springs& springs) {
+/// A side carries what runs through half of the cell beside it.
+void add_sides(const Face& quad, const WovenCell& cell, double strength, Springs& springs) {
   for (std::size_t side = 0; side < 4; ++side) {
     const double k = side % 2 == cell.warp_side ? cell.warp : cell.weft;
-    springs.add(quad, side, quad.next(side), spring(k, area(quad) / 2, side_length(quad, side)));
+    const double half = area(quad) / 2, size = side_length(quad, side);
+    springs.add(quad, side, quad.next(side), spring(k, half, size), strength * half / size);
   }
 }
 
@@ -119,6 +125,7 @@ MembraneElement triangle_element(const Face& triangle, const Material& material,
   element.weft = material.weft;
   element.shear = material.shear;
   element.kind = kind;
+  element.strength = material.strength;
   return element;
 }
 
@@ -172,12 +179,13 @@ Fabric fabric_of(const MeshDescription& mesh, const Welded& welded, const std::v
       fabric.cut_again += faces[f].is_recognised;
       continue;
     }
-    add_sides(faces[f], *weave.cells[f], springs);
+    add_sides(faces[f], *weave.cells[f], material.strength, springs);
     fabric.cells.push_back(faces[f].particles);
     std::rotate(fabric.cells.back().begin(),
                 fabric.cells.back().begin() + weave.cells[f]->warp_side, fabric.cells.back().end());
   }
-  for (const Face& part : cells_and_triangles(faces, weave, mesh.weld_distance)) {
+  fabric.parts = cells_and_triangles(faces, weave, mesh.weld_distance);
+  for (const Face& part : fabric.parts) {
     if (!part.is_quad()) fabric.membrane.push_back(triangle_element(part, material, kind));
   }
   springs.set_kind(kind_of_diagonals(mesh.ropes));

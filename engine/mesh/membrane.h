@@ -21,6 +21,7 @@ struct Fabric {
   /// against which the angles are wide are flipped (delaunay.h).
   std::vector<MembraneElement> membrane;
   std::vector<Constraint> threads;  ///< rigid: lines, but those along an edge or a diagonal
+  std::vector<Face> parts;          ///< cells, and the triangles of all other faces
   std::size_t cut_again = 0;        ///< recognised quads that became no cells
 };
 Fabric fabric_of(const MeshDescription& mesh, const Welded& welded, const std::vector<Face>& faces,

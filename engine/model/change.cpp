@@ -67,6 +67,7 @@ class Describer {
             .rest_length = s.rest_length[c],
             .kind = c < s.bilateral ? ConstraintKind::distance : ConstraintKind::rope,
             .compliance = s.has_springs() ? s.compliance[c] : 0};
+      if (!s.strength.empty()) to.strength = s.strength[c];
       if (s.turned[c]) std::swap(to.a, to.b);
     }
     for (const auto& [described, c] : inert.constraints) description_.constraints[described] = c;
@@ -85,6 +86,7 @@ class Describer {
       to.weft = weft;
       to.shear = shear;
       to.kind = s.element[i].is_rope ? ConstraintKind::rope : ConstraintKind::distance;
+      if (!s.strength.empty()) to.strength = s.strength[i];
     }
     for (const auto& [described, e] : inert.membrane) description_.membrane[described] = e;
   }
@@ -114,7 +116,8 @@ class Describer {
   void describe_seams() {
     const SeamStore& s = model_.seams;
     for (std::size_t i = 0; i < s.size(); ++i) {
-      description_.seams.push_back({particle(s.a[i]), particle(s.b[i]), s.time[i], s.force[i]});
+      description_.seams.push_back(
+          {particle(s.a[i]), particle(s.b[i]), s.time[i], s.force[i], s.strength[i]});
     }
   }
 
@@ -205,7 +208,9 @@ void take_rest(const MembraneElement& from, double scale, MembraneElement& to) {
   to.rest = from.rest;
   for (auto& [u, v] : to.rest) u *= scale, v *= scale;
 }
+/// One that a tear has cut stays so.
 void take_rest(const BendingElement& from, double scale, BendingElement& to) {
+  if (std::ranges::all_of(to.weights, [](double weight) { return weight == 0; })) return;
   to.weights = from.weights;
   for (double& weight : to.weights) weight /= scale;
   to.rest = from.rest;
@@ -224,6 +229,8 @@ Result<SceneDescription> with_rest_shape(const Model& model, const SceneDescript
   const auto take = [&](std::string_view name, auto list) {
     if (!result) return;
     result = validate_same_particles(name, description.*list, scene.*list);
+    if (!result && model.tears > 0)
+      result = refuse("scene", "must be of the cloth as it has torn", result.error());
     if (!result) return;
     for (std::size_t i = 0; i < (scene.*list).size(); ++i)
       take_rest((scene.*list)[i], scale, (description.*list)[i]);

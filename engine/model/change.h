@@ -38,11 +38,13 @@ std::shared_ptr<const Model> with_anchor_distances(const Model& model,
 /// Whether both come from one model by changes.
 inline bool are_related(const Model& a, const Model& b) { return a.origin == b.origin; }
 
-/// work(slot in a, slot in b) for each particle of two related models.
+/// work(slot in a, slot in b) for each particle of two related models: they have the same ones, or
+/// a is b, torn.
 template <class Work>
 void for_each_particle(const Model& a, const Model& b, Work&& work) {
   for (std::size_t i = 0; i < a.particles; ++i) {
-    work(a.ordering.slot_of[i], b.ordering.slot_of[i]);
+    const std::size_t its = i < b.particles ? i : a.split_from[i - b.particles];
+    work(a.ordering.slot_of[i], b.ordering.slot_of[its]);
   }
 }
 
@@ -55,6 +57,7 @@ void for_each_described(const std::vector<std::uint32_t>& described_a,
   std::vector<std::uint32_t> in_b(count, kNoIndex);
   for (std::uint32_t i = 0; i < described_b.size(); ++i) in_b[described_b[i]] = i;
   for (std::uint32_t i = 0; i < described_a.size(); ++i) {
+    if (described_a[i] >= count) continue;  // of a torn one
     const std::uint32_t there = in_b[described_a[i]];
     if (there != kNoIndex) work(i, there);
   }

@@ -66,6 +66,7 @@ struct Model::Draft {
     }
     std::vector<std::uint32_t> degree(hub.size()), distances(hub.size());
     for (const Constraint& c : d.constraints) {
+      if (c.strength == 0) continue;
       for (const std::uint32_t end : {c.a, c.b}) {
         ++degree[end];
         distances[end] += c.kind == ConstraintKind::distance;
@@ -77,7 +78,7 @@ struct Model::Draft {
     }
     for (const std::uint32_t s : d.spheres) hub[s] = knot[s] = 1;
   }
-  bool is_inert(const Constraint& c) const { return held[c.a] && held[c.b]; }
+  bool is_inert(const Constraint& c) const { return (held[c.a] && held[c.b]) || c.strength == 0; }
   bool is_at_hub(const Constraint& c) const {
     const auto& of = c.kind == ConstraintKind::distance ? knot : hub;
     return of[c.a] || of[c.b];
@@ -86,7 +87,8 @@ struct Model::Draft {
 
 Model::Model(const SceneDescription& description, const Model* like)
     : particles(description.positions.size()),
-      origin(like != nullptr ? like->origin : std::make_shared<const int>(0)) {
+      origin(like != nullptr ? like->origin : std::make_shared<const int>(0)),
+      tears(like != nullptr ? like->tears : 0) {
   Draft draft(description);
   order_particles(draft, like);
   store_particles(draft);
@@ -104,12 +106,23 @@ Model::Model(const SceneDescription& description, const Model* like)
   friction = description.friction;
   self_contact = description.self_contact;
   find_holds();
+  leave_out_compliances();
   for (const std::uint32_t s : spheres) {
     if (inverse_mass[s] > 0) heaviest_sphere = std::max(heaviest_sphere, 1 / inverse_mass[s]);
   }
   uneven = find_unevenness(inverse_mass, constraints.a, constraints.b, constraints.rest_length);
   find_joined();
+  may_tear = find_strength();
   shrink_lists(*this);
+}
+
+bool Model::find_strength() const {
+  const auto is_finite = [](double strength) { return std::isfinite(strength); };
+  const auto may_break = [](double strength) { return strength > 0 && std::isfinite(strength); };
+  return std::ranges::any_of(constraints.strength, is_finite) ||
+         std::ranges::any_of(membrane.strength, is_finite) ||
+         std::ranges::any_of(seams.strength, may_break) ||
+         std::ranges::any_of(anchors.described, is_finite, &Anchor::strength);
 }
 
 namespace {
@@ -139,7 +152,8 @@ void Model::order_particles(Draft& draft, const Model* like) {
     links.push_back({c.a, c.b, c.kind});
     draft.described_link.push_back(i);
   }
-  if (like != nullptr && linked(like->constraints) == draft.described_link) {
+  const bool is_same = like != nullptr && like->particles == particles;
+  if (is_same && linked(like->constraints) == draft.described_link) {
     ordering = like->ordering;
     spare_slots = like->spare_slots;
     return;
@@ -190,12 +204,19 @@ void Model::store_constraints(const Draft& draft) {
   constraints.bilateral = constraints.size();
   store_batches(draft, ConstraintKind::rope);
   store_hubs(draft, ConstraintKind::rope);
-  if (std::ranges::all_of(constraints.compliance, [](double c) { return c == 0; })) {
-    constraints.compliance = {};
-  }
+  store_strengths(draft.description);
+}
+
+void Model::store_strengths(const SceneDescription& d) {
+  const auto may_break = [](const Constraint& c) { return std::isfinite(c.strength); };
+  if (std::ranges::none_of(d.constraints, may_break)) return;
+  for (const std::uint32_t i : constraints.described)
+    constraints.strength.push_back(d.constraints[i].strength);
 }
 
 void Model::store_membrane(const SceneDescription& d) {
+  const auto may_tear = [](const MembraneElement& e) { return std::isfinite(e.strength); };
+  const bool has_strength = std::ranges::any_of(d.membrane, may_tear);
   for (std::uint32_t i = 0; i < d.membrane.size(); ++i) {
     const MembraneElement& element = d.membrane[i];
     std::array<std::uint32_t, 3> slots{};
@@ -216,6 +237,7 @@ void Model::store_membrane(const SceneDescription& d) {
                                 .stiffness = {element.warp, element.weft, element.shear},
                                 .is_rope = element.kind == ConstraintKind::rope});
     membrane.described.push_back(i);
+    if (has_strength) membrane.strength.push_back(element.strength);
   }
 }
 
@@ -227,7 +249,9 @@ void Model::store_bending(const SceneDescription& d) {
       const std::uint32_t particle = element.particles[i];
       slots[i] = particle == kNoIndex ? slots[2] : ordering.slot_of[particle];
     }
-    if (std::ranges::all_of(slots, [&](std::uint32_t s) { return inverse_mass[s] == 0; })) {
+    const bool is_cut = std::ranges::all_of(element.weights, [](double w) { return w == 0; });
+    if (is_cut ||
+        std::ranges::all_of(slots, [&](std::uint32_t s) { return inverse_mass[s] == 0; })) {
       inert.bending.push_back({k, element});
       continue;
     }
@@ -269,6 +293,7 @@ void Model::store_seams(const SceneDescription& d) {
     seams.b.push_back(ordering.slot_of[seam.b]);
     seams.time.push_back(seam.time);
     seams.force.push_back(seam.max_force);
+    seams.strength.push_back(seam.strength);
   }
 }
 
@@ -429,7 +454,8 @@ std::vector<Link> links_of(const ConstraintStore& store, std::size_t count) {
 }
 
 std::size_t MembraneStore::bytes() const {
-  return bytes_of(slots) + bytes_of(rest) + bytes_of(element) + bytes_of(described);
+  return bytes_of(slots) + bytes_of(rest) + bytes_of(element) + bytes_of(described) +
+         bytes_of(strength);
 }
 
 bool BendingStore::is_folded() const {
@@ -442,7 +468,7 @@ std::size_t BendingStore::bytes() const {
 }
 
 std::size_t SeamStore::bytes() const {
-  return bytes_of(a) + bytes_of(b) + bytes_of(time) + bytes_of(force);
+  return bytes_of(a) + bytes_of(b) + bytes_of(time) + bytes_of(force) + bytes_of(strength);
 }
 
 std::size_t SliderStore::bytes() const {
@@ -461,7 +487,7 @@ reference::AnchorPose pose_of(Vec3 point, Vec3 normal) {
 std::size_t ConstraintStore::bytes() const {
   return bytes_of(a) + bytes_of(b) + bytes_of(rest_length) + bytes_of(effective_mass) +
          bytes_of(compliance) + bytes_of(colour) + bytes_of(described) + bytes_of(slot) +
-         bytes_of(hub_distances) + bytes_of(hub_ropes) + bytes_of_bits(turned);
+         bytes_of(hub_distances) + bytes_of(hub_ropes) + bytes_of_bits(turned) + bytes_of(strength);
 }
 
 std::size_t InertStore::bytes() const {
@@ -474,10 +500,10 @@ std::size_t Model::bytes() const {
          bytes_of(pins) + bytes_of(holds) + bytes_of(spheres) + bytes_of(is_sphere) +
          bytes_of(joined_) + bytes_of(tethers) + ordering.bytes() + constraints.bytes() +
          membrane.bytes() + bending.bytes() + inert.bytes() + anchors.bytes() + seams.bytes() +
-         sliders.bytes() + bytes_of(surface) + bytes_of(air.triangles) + air.at.bytes() +
-         reference_.bytes() + simd_.bytes() + chunk_neighbours_.bytes() + pulls_.bytes() +
-         direct_.bytes() + yarns_.bytes() + small_steps_.bytes() + bending_fronts_.bytes() +
-         touched_surface_.bytes();
+         sliders.bytes() + bytes_of(split_from) + bytes_of(surface) + bytes_of(air.triangles) +
+         air.at.bytes() + reference_.bytes() + simd_.bytes() + chunk_neighbours_.bytes() +
+         pulls_.bytes() + direct_.bytes() + yarns_.bytes() + small_steps_.bytes() +
+         bending_fronts_.bytes() + touched_surface_.bytes();
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {
@@ -496,7 +522,8 @@ ModelInfo describe(const Model& model) {
           .membrane_elements = model.membrane.size(),
           .bending_elements = model.bending.size(),
           .anchors = model.anchors.described.size(),
-          .seams = model.seams.size(),
+          .seams = static_cast<std::size_t>(
+              std::ranges::count_if(model.seams.strength, [](double s) { return s > 0; })),
           .surface_triangles = model.surface.size(),
           .air_triangles = model.air.triangles.size(),
           .spheres = model.spheres.size(),

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -49,10 +50,12 @@ struct ConstraintStore {
   std::vector<std::uint32_t> a, b;  // slots
   kernels::AlignedVector<double> rest_length;
   kernels::AlignedVector<double> effective_mass;  // 1 / (w_a + w_b), kg
-  kernels::AlignedVector<double> compliance;      // m/N, 0: rigid; empty where all are
-  std::vector<std::uint32_t> colour;              // unique at a particle, hubs left out
-  std::vector<std::uint32_t> described;           // index in the description
-  std::vector<std::uint32_t> slot;                // constraint slot; kNoIndex: at a hub
+  /// m/N, 0: rigid; empty where all are, but see Model::leave_out_compliances().
+  kernels::AlignedVector<double> compliance;
+  std::vector<double> strength;          // N; empty where none breaks
+  std::vector<std::uint32_t> colour;     // unique at a particle, hubs left out
+  std::vector<std::uint32_t> described;  // index in the description
+  std::vector<std::uint32_t> slot;       // constraint slot; kNoIndex: at a hub
   std::vector<std::uint32_t> hub_distances, hub_ropes;
   std::vector<bool> turned;  // a is the description's b
   std::size_t size() const { return a.size(); }
@@ -83,6 +86,7 @@ struct MembraneStore {
   std::vector<std::array<std::array<double, 2>, 3>> rest;
   std::vector<reference::MembraneElement> element;
   std::vector<std::uint32_t> described;  // index in the description
+  std::vector<double> strength;          // N/m; empty where none tears
   std::size_t size() const { return slots.size(); }
   std::size_t bytes() const;
   /// work(slot, slot, length at rest) for each side of each triangle.
@@ -107,8 +111,8 @@ struct AirStore {
   kernels::Vector wind{};
 };
 
-/// Elements that lie between fixed particles alone and wait for one of them to be released: numbers
-/// and text of the description, in its order.
+/// Elements that lie between fixed particles alone and wait for one of them to be released, and
+/// those that are broken: numbers and text of the description, in its order.
 struct InertStore {
   template <class T>
   struct Entry {
@@ -135,9 +139,13 @@ struct AnchorStore {
 
 /// Seams (weft.h) in the order of the description.
 struct SeamStore {
-  std::vector<std::uint32_t> a, b;  // slots
-  std::vector<double> time, force;  // s, N
+  std::vector<std::uint32_t> a, b;            // slots
+  std::vector<double> time, force, strength;  // s, N, N
   std::size_t size() const { return a.size(); }
+  bool is_broken(std::size_t i) const { return strength[i] == 0; }
+  bool may_break(std::size_t i) const {
+    return strength[i] > 0 && strength[i] < std::numeric_limits<double>::infinity();
+  }
   std::size_t bytes() const;
 };
 
@@ -169,6 +177,7 @@ class Model {
  public:
   /// The description must be valid. like: a model of the same particles and constraints, which
   /// differ in numbers at most; it saves work.
+  /// One of more particles: a torn one.
   explicit Model(const SceneDescription& description, const Model* like = nullptr);
   /// Another one that shares what backends and solvers need, until it is changed by the two below.
   Model(const Model&) = default;
@@ -210,8 +219,13 @@ class Model {
   Unevenness uneven;
   double heaviest_sphere = 0;  // kg, of the free ones
   InertStore inert;
-  /// One object for a model and all that changes (engine/model/change.h) make of it.
+  /// One object for a model and all that changes (engine/model/change.h) and tears make of it.
   std::shared_ptr<const int> origin;
+  /// Only where the model was torn (engine/model/tear.h): for each particle that the one before did
+  /// not have, the particle that it was split from.
+  std::vector<std::uint32_t> split_from;
+  std::uint32_t tears = 0;  // since `origin`
+  bool may_tear = false;    // anything has a strength and is not broken
 
   /// Whether an anchor holds the particle as if it were fixed: it has no limit to move within.
   bool is_attached(std::uint32_t slot) const {
@@ -263,6 +277,8 @@ class Model {
   void order_particles(Draft& draft, const Model* like);
   void store_particles(const Draft& draft);
   void store_constraints(const Draft& draft);
+  void leave_out_compliances();
+  void store_strengths(const SceneDescription& description);
   void store_batches(const Draft& draft, ConstraintKind kind);
   void store_hubs(const Draft& draft, ConstraintKind kind);
   void store_membrane(const SceneDescription& description);
@@ -275,6 +291,7 @@ class Model {
   void list_air_triangles();
   void find_holds();
   void find_joined();
+  bool find_strength() const;
   /// Where the layout of small steps is made already.
   void renew_bending_layout();
   void append(const Constraint& constraint, std::uint32_t described, std::uint32_t a,

@@ -11,7 +11,9 @@ namespace {
 
 std::vector<Join> joins_of(const SceneDescription& d) {
   std::vector<Join> joins;
-  for (const Constraint& c : d.constraints) joins.push_back({c.a, c.b, c.rest_length});
+  for (const Constraint& c : d.constraints) {
+    if (c.strength > 0) joins.push_back({c.a, c.b, c.rest_length});
+  }
   for (const MembraneElement& e : d.membrane) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto &from = e.rest[k], &to = e.rest[(k + 1) % 3];

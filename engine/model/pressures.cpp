@@ -135,6 +135,13 @@ std::vector<Pressure> with_volumes(std::span<const Pressure> pressures,
   return known;
 }
 
+void let_gas_out(std::vector<Pressure>& pressures, std::span<const SurfaceTriangle> surface) {
+  for (Pressure& part : pressures) {
+    if (part.gas && find_border(triangles_of(part, surface)))
+      part = {.triangles = std::move(part.triangles)};
+  }
+}
+
 Result<void> validate_pressures(std::span<const Pressure> pressures,
                                 std::span<const Pressure> known,
                                 std::span<const SurfaceTriangle> surface, const SlotPlace& place) {

@@ -52,6 +52,9 @@ std::vector<Pressure> with_volumes(std::span<const Pressure> pressures,
                                    std::span<const SurfaceTriangle> surface,
                                    const SlotPlace& place);
 
+/// A gas whose triangles do not enclose it any more has no pressure.
+void let_gas_out(std::vector<Pressure>& pressures, std::span<const SurfaceTriangle> surface);
+
 /// known: valid ones. Triangles that one of the same number has are not looked at again.
 Result<void> validate_pressures(std::span<const Pressure> pressures,
                                 std::span<const Pressure> known,

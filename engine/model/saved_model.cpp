@@ -13,8 +13,9 @@
 namespace weft {
 namespace {
 
-/// The version changes with whatever is written here, and so with each kind of element.
-constexpr Kind kModel{{'w', 'e', 'f', 't', 'm', 'o', 'd', 'l'}, "model", kListedInScenes};
+/// The version changes with whatever is written here, and so with each field of an element.
+constexpr Kind kModel{
+    {'w', 'e', 'f', 't', 'm', 'o', 'd', 'l'}, "model", kListedInScenes + kListedInElements};
 
 }  // namespace
 

@@ -42,14 +42,16 @@ class SurfacePieces {
   std::vector<bool> is_in_;
 };
 
-/// Those whose ends are all fixed, too.
+/// Those whose ends are all fixed, too; not those that are broken.
 std::vector<Side> constraints_of(const Model& model) {
   std::vector<Side> sides;
   const ConstraintStore& c = model.constraints;
   for (std::size_t i = 0; i < c.size(); ++i) sides.push_back({c.a[i], c.b[i], c.rest_length[i]});
   const auto& slot_of = model.ordering.slot_of;
-  for (const auto& [described, inert] : model.inert.constraints)
+  for (const auto& [described, inert] : model.inert.constraints) {
+    if (inert.strength == 0) continue;
     sides.push_back({slot_of[inert.a], slot_of[inert.b], inert.rest_length});
+  }
   return sides;
 }
 

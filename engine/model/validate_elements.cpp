@@ -58,8 +58,8 @@ Rule rule_of_weights(const FieldName& field, const BendingElement& b) {
   }
   if (b.particles[3] == kNoIndex && b.weights[3] != 0)
     return refuse(field.at(3), "has no particle", number(b.weights[3]));
-  if (size > 0 && std::abs(sum) <= kLeastSum * size) return {};
-  return refuse(field, "must sum to 0 and not all be 0", number(sum));
+  if (std::abs(sum) <= kLeastSum * size) return {};
+  return refuse(field, "must sum to 0", number(sum));
 }
 
 Rule rule_of(const FieldName& field, const BendingElement& b, std::size_t particles) {

@@ -48,6 +48,12 @@ void visit_fields(Is<SceneDescription> auto& scene, auto& archive) {
 inline constexpr std::uint32_t kListedInScenes =
     std::tuple_size_v<decltype(kElementKinds)> +
     std::tuple_size_v<decltype(kPartFields<SceneDescription>)>;
+/// Fields of all kinds of elements.
+template <class... Element>
+constexpr std::uint32_t count_fields(const std::tuple<ElementKind<Element>...>&) {
+  return static_cast<std::uint32_t>((std::tuple_size_v<decltype(kElementFields<Element>)> + ...));
+}
+inline constexpr std::uint32_t kListedInElements = count_fields(kElementKinds);
 static_assert(detail::has_fields<SceneDescription, 12 + kListedInScenes>(),
               "a field of SceneDescription is not saved");
 

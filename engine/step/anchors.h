@@ -55,6 +55,10 @@ class Anchors {
   }
   /// m, the largest by which a limit is exceeded: where a step ends, or begins.
   double largest_excess(const AnchorStore& store, const kernels::Vectors& x, bool ends) const;
+  /// Whether a particle at x is as far from the point of a described anchor as it may be.
+  bool is_at_limit(std::uint32_t anchor, kernels::Vector x, double tolerance) const {
+    return length(x - from_[anchor].point) >= most_from_[anchor] - tolerance;
+  }
   /// Whether one moves in this step or has moved in the last.
   bool moving() const { return moves_ || moved_ || most_from_ != most_to_; }
   std::size_t bytes() const;

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <vector>
 
+#include "engine/model/chains.h"
 #include "engine/model/model.h"
 #include "engine/solvers/direct/direct_bodies.h"
 #include "engine/solvers/small_steps/linkage_layout.h"
@@ -58,7 +59,7 @@ Solver solver_for(const Model& model, const Settings& settings) {
 /// for springs unless another scheme is asked for.
 bool is_for_small_steps(const Model& model, const Settings& settings) {
   const bool springs = model.constraints.has_springs() && settings.scheme == Scheme::automatic;
-  return springs || model.self_contact.on || !model.pressures.empty() ||
+  return springs || model.may_tear || model.self_contact.on || !model.pressures.empty() ||
          model.membrane.size() > 0 || model.bending.size() > 0 || model.anchors.size() > 0 ||
          model.seams.size() > 0 || model.sliders.size() > 0 || is_of_small_steps(settings.scheme);
 }

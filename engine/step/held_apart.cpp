@@ -22,7 +22,7 @@ double held_strain(const State& s, const Constraint& c) {
 void look_at_constraints(const State& s, HeldApart& found) {
   double worst = 0;
   for (const auto& [described, c] : s.model->inert.constraints) {
-    if (c.compliance > 0) continue;
+    if (c.compliance > 0 || c.strength == 0) continue;
     const double strain = held_strain(s, c);
     if (strain <= s.settings.tolerance) continue;
     ++found.count;
@@ -38,6 +38,7 @@ void look_at_seams(const State& s, HeldApart& found) {
   for (std::size_t i = 0; i < seams.size(); ++i) {
     const std::uint32_t a = seams.a[i], b = seams.b[i];
     if (s.model->inverse_mass[a] + s.model->inverse_mass[b] > 0) continue;
+    if (seams.is_broken(i)) continue;
     const SeamState& state = s.seams.states()[i];
     const double gap = length(s.position[a] - s.position[b]);
     if (!state.is_open() || gap <= s.settings.contact_tolerance) continue;

@@ -16,7 +16,15 @@ void Seams::begin(const Model& model, const kernels::Vectors& x, double toleranc
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const double way = gap(model, i, x);
     const double time = model.seams.time[i];
-    states_[i] = {way / time, time, way <= tolerance, states_[i].is_released};
+    const bool is_closed = way <= tolerance && !model.seams.is_broken(i);
+    states_[i] = {way / time, time, is_closed, states_[i].is_released};
+  }
+}
+
+void Seams::tear(const Model& model) {
+  states_.resize(model.seams.size());
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    if (model.seams.is_broken(i)) states_[i].is_closed = false;
   }
 }
 
@@ -25,7 +33,8 @@ bool Seams::close(std::uint32_t seam, const Model& model, const kernels::Vectors
   if (!states_[seam].is_released) return false;
   const double way = gap(model, seam, x);
   const double time = model.seams.time[seam];
-  states_[seam] = {way / time, time, way <= tolerance, false};
+  const bool is_closed = way <= tolerance && !model.seams.is_broken(seam);
+  states_[seam] = {way / time, time, is_closed, false};
   return true;
 }
 
@@ -34,7 +43,7 @@ SeamGaps measure_seams(const Model& model, std::span<const SeamState> states,
   SeamGaps gaps;
   double widest = 0;
   for (std::size_t i = 0; i < states.size(); ++i) {
-    if (states[i].is_released) continue;
+    if (states[i].is_released || model.seams.is_broken(i)) continue;
     if (states[i].is_closed) {
       gaps.largest = std::max(gaps.largest, gap(model, i, x));
       continue;

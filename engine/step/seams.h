@@ -30,6 +30,9 @@ class Seams {
   /// A step was done.
   void take(std::span<const SeamState> states) { states_.assign(states.begin(), states.end()); }
 
+  /// The model was torn.
+  void tear(const Model& model);
+
   std::span<const SeamState> states() const { return states_; }
   std::size_t bytes() const { return states_.capacity() * sizeof(SeamState); }
   friend void visit_fields(Is<Seams> auto& seams, auto& archive) {

@@ -62,6 +62,7 @@ class Frame {
     solver_.advance(team_);
     const bool to_tolerance = s_.settings.iterations == 0;
     for (int i = 0; i < std::max(1, s_.settings.iterations); ++i) sweep();
+    solver_.weigh();
     forces_.end_sweep(team_);
     solver_.take_contact_visits();  // as a sweep for each substep
     const double rest = passes_.left() - passes_.share_of_substep(places_.left());

@@ -198,7 +198,7 @@ std::size_t State::bytes() const {
   sum += contacts.bytes() + nearby.bytes() + coplanar_layers.bytes() + bytes_of(impulses) +
          bytes_of(inverse_mass_of_met) + bytes_of(resistances) + pins.bytes() + anchors.bytes() +
          seams.bytes() + sliders.bytes() + bodies.bytes() + rest.bytes() + pressed.bytes() +
-         bytes_of(pressures) + bytes_of(gas) + measure->bytes();
+         bytes_of(pressures) + bytes_of(gas) + bytes_of(torn) + measure->bytes();
   for (const Pressure& part : pressures) sum += bytes_of(part.triangles);
   if (team_state) sum += sizeof(Team::SharedState);
   if (arena_run) sum += sizeof(ArenaRun);

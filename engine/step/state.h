@@ -159,6 +159,7 @@ struct State : LastingState {
   CoplanarLayers coplanar_layers;
   std::optional<Gaps> gaps;  // of the cloth, once a body asks for them
   BodyReport body_report;    // of the present attempt by small steps
+  std::vector<Torn> torn;    // when the last step ended
 
   std::vector<kernels::ImpulseEnergy> impulses;  // per stretch of slots
   kernels::AlignedVector<double>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <new>
 #include <utility>
 
 #include "engine/parallel/team.h"
@@ -16,6 +17,7 @@
 #include "engine/step/report_errors.h"
 #include "engine/step/reporting.h"
 #include "engine/step/small_step.h"
+#include "engine/step/tearing.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -347,10 +349,26 @@ void advance(State& s, double dt, StepReport& report, Team& team) {
 
 }  // namespace
 
+namespace {
+
+/// Where memory runs out nothing is torn: what is overloaded is so in the next step, too.
+void tear_what_breaks(State& s, StepReport& report) {
+  try {
+    if (tear(s)) report.torn = static_cast<int>(s.torn.size());
+  } catch (const std::bad_alloc&) {
+  }
+}
+
+}  // namespace
+
 StepReport step(State& s, double dt, Team& team) {
+  s.torn.clear();
   if (s.rest.is_asleep()) return s.asleep;
   StepReport report;
-  timed(report, Stage::commit, [&] { advance(s, dt, report, team); });
+  timed(report, Stage::commit, [&] {
+    advance(s, dt, report, team);
+    if (s.model->may_tear && committed(report.status)) tear_what_breaks(s, report);
+  });
   return report;
 }
 

@@ -10,6 +10,7 @@
 ///   pins, anchors  fixed particles and points of anchors that are moved
 ///   pin_work       the work that they do
 ///   rest           whether a cloth rests, and sleeps
+///   tearing        what breaks when the step ends
 #pragma once
 
 #include <weft/weft.h>

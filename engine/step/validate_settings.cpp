@@ -153,8 +153,10 @@ Result<void> validate_for_solver(const Settings& s, const Model& model) {
     if (count > 0)
       return refuse(what, "is solved by small_steps only", std::string(name(s.solver)));
   }
-  if (model.self_contact.on)
-    return refuse("self_contact", "is for small_steps only", std::string(name(s.solver)));
+  for (const auto& [what, is_there] :
+       {std::pair{"self_contact", model.self_contact.on}, std::pair{"strength", model.may_tear}}) {
+    if (is_there) return refuse(what, "is for small_steps only", std::string(name(s.solver)));
+  }
   return {};
 }
 

@@ -184,7 +184,18 @@ struct StepReport {
   std::uint32_t worst_held = kNoIndex;  ///< of these, the constraint with the largest strain
   double untangling_work = 0;           ///< J, work of SelfContact::untangle
   double max_rail_gap =
-      0;  ///< m, of sliders from their rails: bounded by contact_tolerance (Slider)
+      0;         ///< m, of sliders from their rails: bounded by contact_tolerance (Slider)
+  int torn = 0;  ///< all that broke when this step ended (Cloth::torn)
+};
+
+/// Something that broke when a step ended (Tear).
+struct Torn {
+  Tear kind = Tear::constraint;
+  std::uint32_t index = 0;  ///< of the constraint, the seam, the anchor, or the particle of a sheet
+  std::uint32_t particle = kNoIndex;  ///< of a sheet: the new one
+  double load = 0;                    ///< N, of triangles of fabric N/m: the mean over the step
+
+  bool operator==(const Torn&) const = default;
 };
 
 /// Strain of all constraints, and of triangles of fabric | |f_u| - 1 | and | |f_v| - 1 |, for the
@@ -453,6 +464,15 @@ class WEFT_API Cloth {
   /// The contacts when the last step of this cloth ended; an empty list after clone() and change().
   std::vector<BodyContact> body_contacts() const;
 
+  /// The breaks at the end of the last step; an empty list after clone(), change(), load_state().
+  /// The cloth then has a model of its own, as after change(), which takes about as long. Where a
+  /// sheet is torn it has more particles: particle_count() grows, and numbers stay. If memory runs
+  /// out nothing breaks before the next step.
+  std::vector<Torn> torn() const;
+  /// SceneDescription::surface as tears have left it: triangles keep their numbers, and have new
+  /// particles as corners where they were split.
+  std::vector<std::array<std::uint32_t, 3>> surface() const;
+
   /// Changes the description of a moving cloth. If memory runs out, or on an error, nothing is
   /// changed. model() is then another one, as build_model makes it of the changed description;
   /// other cloths of the old model keep that. Numbers of particles and constraints stay the same.
@@ -475,8 +495,8 @@ class WEFT_API Cloth {
   /// garments on bodies that grow. It takes from `scene`, times `scale`: rest lengths of
   /// constraints, corners of triangles of fabric, lengths of tethers, and of bending elements the
   /// weights (over `scale`, so angles stay), rest and fold; and compliances of constraints and
-  /// bending elements. Its elements must be those of this cloth, with the same particles; all else
-  /// in it is ignored. cloth_from_mesh makes such a scene of the same mesh with other
+  /// bending elements. Its elements must be those of this cloth, with the same particles, as torn;
+  /// all else in it is ignored. cloth_from_mesh makes such a scene of the same mesh with other
   /// rest_positions. Strain, areas and distances of contacts are then those of the new shape.
   /// Stiffnesses of triangles, masses, positions and velocities stay.
   ///

@@ -43,6 +43,9 @@ struct Material {
   double drag = 0;             ///< as Air::drag
   double lift = 0;             ///< as Air::lift
   double ram = 0;              ///< as Air::ram
+  /// N/m, > 0: a strip of width b, pulled evenly, tears at the force strength b. Infinite: it never
+  /// does (Tear).
+  double strength = std::numeric_limits<double>::infinity();
 };
 
 /// The error is one line that names the field and the value that were refused.

@@ -108,6 +108,7 @@ inline constexpr std::tuple kReportFields{
                 "the number of such a constraint, or kNoIndex"},
     ReportField{"untangling_work", &StepReport::untangling_work, OverSteps::sum, "J"},
     ReportField{"max_rail_gap", &StepReport::max_rail_gap, OverSteps::largest, "m"},
+    ReportField{"torn", &StepReport::torn, OverSteps::sum, "what broke when the step ended"},
 };
 inline constexpr std::size_t kReportFieldCount = std::tuple_size_v<decltype(kReportFields)>;
 

@@ -47,7 +47,30 @@ struct Constraint {
   double rest_length = 0;  ///< m, 1e-150 to 1e150; on the simd backend 1e-18 to 1e18
   ConstraintKind kind = ConstraintKind::distance;
   double compliance = 0;  ///< m/N, inverse stiffness; finite, at least 0. 0: rigid
+  /// N, at least 0; infinite: it never breaks. 0: it is broken, and joins nothing (Tear).
+  double strength = std::numeric_limits<double>::infinity();
 };
+
+/// Cloth that tears. A constraint, a triangle of fabric, a closed seam or an anchor may have a
+/// strength. One that carries more than that, in the mean of a step, breaks when the step ends. If
+/// several are overloaded side by side only that with the largest multiple of its strength breaks
+/// then, since that relieves the others: a crack grows by one edge in each step.
+///
+/// constraint: its strength becomes 0. So a rope or a thread parts.
+/// seam: its strength becomes 0, and its particles are free of each other. Their faces and edges
+///   still touch nothing of each other (SelfContact).
+/// anchor: its particle is let go, as by Cloth::limit_anchor with an infinite distance.
+/// sheet: one of its particles becomes two, each with the triangles, constraints and the mass of
+///   its side. The crack runs along edges of `surface`, as nearly across the largest tension as
+///   they allow; not along the diagonal of a four-sided cell. It is made where a constraint along
+///   an edge of `surface` is overloaded, or where triangles of fabric are: there the mean tension
+///   around a particle counts. The new particle has the next number, and a broken seam joins it to
+///   the old one, which keeps its sliders and rails. A fixed one loses the fabric that pulls at it.
+///
+/// A break takes the elastic energy of what breaks, and adds none. Solver small_steps only;
+/// `automatic` becomes small_steps. Tethers do not break. A gas whose triangles no longer enclose
+/// it has lost its pressure.
+enum class Tear : std::uint8_t { constraint, seam, anchor, sheet };
 
 /// A bending spring over three or four particles. Its weights sum to zero, so that
 ///
@@ -69,10 +92,11 @@ struct Constraint {
 /// that turns all the way over changes its sign without a jump.
 struct BendingElement {
   std::array<std::uint32_t, 4> particles{};  ///< all different; the last may be kNoIndex
-  std::array<double, 4> weights{};           ///< the last is 0 where its particle is kNoIndex
-  double rest = 0;                           ///< m, |d| of the shape at rest; 0: flat
-  double compliance = 0;                     ///< m/N, > 0
-  double fold = 0;                           ///< m, d along n at rest, of hinges; 0: flat
+  /// The last is 0 where its particle is kNoIndex. All are 0 where a tear has cut the element.
+  std::array<double, 4> weights{};
+  double rest = 0;        ///< m, |d| of the shape at rest; 0: flat
+  double compliance = 0;  ///< m/N, > 0
+  double fold = 0;        ///< m, d along n at rest, of hinges; 0: flat
 };
 
 /// A triangle of fabric. The columns of its deformation F = [f_u f_v] are the images of a unit of
@@ -94,6 +118,8 @@ struct MembraneElement {
   double shear = 0;  ///< N/m per radian of shear, likewise
   /// rope: warp and weft only pull, so the triangle may become narrower without a force.
   ConstraintKind kind = ConstraintKind::distance;
+  /// N/m, > 0, of the largest tension in any direction; infinite: it never tears (Tear).
+  double strength = std::numeric_limits<double>::infinity();
 };
 
 /// Damping times of springs, and the decay of all motion.
@@ -182,6 +208,9 @@ struct Anchor {
   double max_distance = 0;       ///< m, at least 0; infinite: no limit
   double backstop_distance = 0;  ///< m, of the surface of the backstop behind the point; >= 0
   double backstop_radius = 0;    ///< m; 0: there is no backstop; infinite: it is a plane
+  /// N, > 0; infinite: it never lets go. It carries the pull of constraints, fabric and seams at
+  /// the particle, and the particle's weight, while the particle is at max_distance (Tear).
+  double strength = std::numeric_limits<double>::infinity();
 };
 
 /// A largest distance from a particle to a fixed one, its pin:
@@ -223,16 +252,19 @@ struct Slider {
 
 /// Two particles that are sewn together while the cloth moves, wherever they begin. They come
 /// together along the straight line between them in the time `time`, never faster. If max_force is
-/// too small for that, they take longer. Then the seam is closed for good: it holds any force. An
-/// open seam does not count as an error until its time is over (StepReport::open_seams,
-/// late_seams). Positions that are written apart from each other open it again.
-/// Cloth::release_seams undoes it. Faces and edges of the cloth at one of the two particles do not
-/// collide with those at the other (SelfContact). Solver small_steps only.
+/// too small for that, they take longer. Then the seam is closed: it holds any force up to its
+/// strength. An open seam does not count as an error until its time is over
+/// (StepReport::open_seams, late_seams). Positions that are written apart from each other open it
+/// again. Cloth::release_seams undoes it. Faces and edges of the cloth at one of the two particles
+/// do not collide with those at the other (SelfContact). Solver small_steps only.
 struct Seam {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
   double time = 1;                                             ///< s, > 0
   double max_force = std::numeric_limits<double>::infinity();  ///< N, > 0, while it is open
+  /// N, at least 0, of the closed seam; infinite: it never breaks. 0: it is broken, and draws
+  /// nothing together (Tear).
+  double strength = std::numeric_limits<double>::infinity();
 };
 
 /// Cloth that touches itself: all cloths and pieces of a scene, by the triangles of `surface` and

@@ -111,6 +111,8 @@ inline constexpr std::tuple kElementFields<Constraint>{
                  &weft_scene::constraint_kinds, Given::maybe},
     ElementField{"compliance", &Constraint::compliance, Values::not_negative, Given::maybe,
                  "compliances", &weft_scene::compliances, Given::maybe},
+    ElementField{"strength", &Constraint::strength, Values::not_negative_or_infinite, Given::maybe,
+                 "constraint_strengths", &weft_scene::constraint_strengths, Given::maybe},
 };
 
 template <>
@@ -127,6 +129,8 @@ inline constexpr std::tuple kElementFields<MembraneElement>{
                  "membrane_stiffnesses", &weft_scene::membrane_stiffnesses},
     ElementField{"kind", &MembraneElement::kind, Values::kind, Given::maybe, "membrane_kinds",
                  &weft_scene::membrane_kinds, Given::maybe},
+    ElementField{"strength", &MembraneElement::strength, Values::positive_or_infinite, Given::maybe,
+                 "membrane_strengths", &weft_scene::membrane_strengths, Given::maybe},
 };
 
 template <>
@@ -158,6 +162,8 @@ inline constexpr std::tuple kElementFields<Anchor>{
                  Given::maybe, "backstop_distances", &weft_scene::backstop_distances, Given::maybe},
     ElementField{"backstop_radius", &Anchor::backstop_radius, Values::not_negative_or_infinite,
                  Given::maybe, "backstop_radii", &weft_scene::backstop_radii, Given::maybe},
+    ElementField{"strength", &Anchor::strength, Values::positive_or_infinite, Given::maybe,
+                 "anchor_strengths", &weft_scene::anchor_strengths, Given::maybe},
 };
 
 template <>
@@ -170,6 +176,8 @@ inline constexpr std::tuple kElementFields<Seam>{
                  &weft_scene::seam_times, Given::maybe},
     ElementField{"max_force", &Seam::max_force, Values::positive_or_infinite, Given::maybe,
                  "seam_max_forces", &weft_scene::seam_max_forces, Given::maybe},
+    ElementField{"strength", &Seam::strength, Values::not_negative_or_infinite, Given::maybe,
+                 "seam_strengths", &weft_scene::seam_strengths, Given::maybe},
 };
 
 template <>

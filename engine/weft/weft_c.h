@@ -185,6 +185,12 @@ typedef struct weft_scene { /* SceneDescription */
   const double* slider_frictions; /* or NULL: 0 */
   size_t rail_particle_count;
   const uint32_t* rail_particles;
+
+  /* N, of triangles N/m; or NULL: infinite, nothing breaks */
+  const double* constraint_strengths;
+  const double* membrane_strengths;
+  const double* anchor_strengths;
+  const double* seam_strengths;
 } weft_scene;
 
 typedef struct weft_model_info { /* ModelInfo */
@@ -288,6 +294,7 @@ typedef struct weft_report { /* StepReport */
   int held_apart;
   uint32_t worst_held;
   double untangling_work, max_rail_gap;
+  int torn;
 } weft_report;
 
 /* JobSystem. Set both functions or neither; they must not throw. NULL in place of the struct is the
@@ -501,6 +508,30 @@ WEFT_API weft_result weft_place_body_vertices(weft_cloth* cloth, uint32_t id, si
 WEFT_API weft_result weft_switch_body(weft_cloth* cloth, uint32_t id, int on);
 WEFT_API weft_result weft_remove_body(weft_cloth* cloth, uint32_t id);
 WEFT_API weft_result weft_body_load_of(const weft_cloth* cloth, uint32_t id, weft_body_load* load);
+enum {
+  WEFT_TORN_CONSTRAINT = 0,
+  WEFT_TORN_SEAM = 1,
+  WEFT_TORN_ANCHOR = 2,
+  WEFT_TORN_SHEET = 3
+}; /* Tear */
+
+typedef struct weft_torn { /* Torn */
+  size_t size;             /* in an array all entries have the size of the first */
+  int kind;                /* the enumeration above */
+  uint32_t index;
+  uint32_t particle; /* or WEFT_NO_INDEX */
+  double load;
+} weft_torn;
+
+WEFT_API weft_result weft_init_torn(weft_torn* torn, size_t size);
+/* Writes three corners of each of the first `capacity` triangles, and the number of all triangles
+ * to *count. */
+WEFT_API weft_result weft_surface_of(const weft_cloth* cloth, size_t capacity, uint32_t* out,
+                                     size_t* count);
+/* The breaks at the end of the last step. Writes the first `capacity` of them, and the number of
+ * all to *count. */
+WEFT_API weft_result weft_torn_of(const weft_cloth* cloth, size_t capacity, weft_torn* out,
+                                  size_t* count);
 /* Writes the first `capacity` contacts, and the number of all contacts to *count. */
 WEFT_API weft_result weft_body_contacts(const weft_cloth* cloth, size_t capacity,
                                         weft_body_contact* out, size_t* count);
@@ -513,6 +544,7 @@ typedef struct weft_material { /* Material */
   double damping_stretch, damping_bending, damping_motion, drag, lift;
   double friction;
   double ram;
+  double strength;
 } weft_material;
 
 WEFT_API weft_result weft_init_material(weft_material* material, size_t size);

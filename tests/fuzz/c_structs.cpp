@@ -27,6 +27,7 @@ void draw_constraints(Arrays& arrays, weft_scene& scene) {
   scene.rest_lengths = arrays.numbers(scene.constraint_count, kSpacing);
   scene.constraint_kinds = arrays.optional_bytes(scene.constraint_count);
   scene.compliances = arrays.optional_numbers(scene.constraint_count, 1e-3);
+  scene.constraint_strengths = arrays.optional_numbers(scene.constraint_count, 1);
 }
 
 void draw_fabric(Arrays& arrays, weft_scene& scene) {
@@ -36,6 +37,7 @@ void draw_fabric(Arrays& arrays, weft_scene& scene) {
   scene.membrane_rest = arrays.numbers(6 * scene.membrane_count, kSpacing);
   scene.membrane_stiffnesses = arrays.numbers(3 * scene.membrane_count, 100);
   scene.membrane_kinds = arrays.optional_bytes(scene.membrane_count);
+  scene.membrane_strengths = arrays.optional_numbers(scene.membrane_count, 10);
   scene.bending_count = drawing.below(3);
   scene.bending_particles = arrays.indices(4 * scene.bending_count, scene.particle_count);
   std::vector<double> weights;
@@ -61,10 +63,12 @@ void draw_anchors_and_seams(Arrays& arrays, weft_scene& scene) {
   scene.anchor_max_distances = arrays.optional_numbers(scene.anchor_count, 0.05);
   scene.backstop_distances = arrays.optional_numbers(scene.anchor_count, 0.01);
   scene.backstop_radii = arrays.optional_numbers(scene.anchor_count, 1);
+  scene.anchor_strengths = arrays.optional_numbers(scene.anchor_count, 1);
   scene.seam_count = drawing.below(2);
   scene.seam_particles = arrays.indices(2 * scene.seam_count, scene.particle_count);
   scene.seam_times = arrays.optional_numbers(scene.seam_count, 0.1);
   scene.seam_max_forces = arrays.optional_numbers(scene.seam_count, 1);
+  scene.seam_strengths = arrays.optional_numbers(scene.seam_count, 1);
 }
 
 void draw_world(Arrays& arrays, weft_scene& scene) {

@@ -19,13 +19,21 @@ double scale_at(const RestScale& scale, double time) {
 }
 
 GrowingRest::GrowingRest(const RestScale& scale, const Cloth& cloth) : scale_(scale) {
-  if (!scale.times.empty()) scene_ = description_of(*cloth.model());
+  if (scale.times.empty()) return;
+  scene_ = description_of(*cloth.model());
+  tears_ = cloth.model()->tears;
 }
 
 Result<void> GrowingRest::grow(Cloth& cloth, double time) {
   const double now = scale_at(scale_, time);
-  if (std::exchange(last_, now) == now) return {};
-  return cloth.set_rest_shape(scene_, now);
+  const double before = std::exchange(last_, now);
+  if (before == now) return {};
+  if (const auto model = cloth.model(); model->tears != tears_) {
+    scene_ = description_of(*model);
+    scale_of_scene_ = before;
+    tears_ = model->tears;
+  }
+  return cloth.set_rest_shape(scene_, now / scale_of_scene_);
 }
 
 RestScale present_scale(const RestScale& scale, double elapsed) {
@@ -40,6 +48,11 @@ RestScale present_scale(const RestScale& scale, double elapsed) {
     present.scales.push_back(scale.scales[key]);
   }
   return present;
+}
+
+RestScale scale_over(RestScale scale, double now) {
+  for (double& each : scale.scales) each /= now;
+  return scale;
 }
 
 }  // namespace weft::tools

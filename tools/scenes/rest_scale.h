@@ -3,6 +3,7 @@
 
 #include <weft/weft.h>
 
+#include <cstdint>
 #include <vector>
 
 namespace weft::tools {
@@ -16,7 +17,7 @@ struct RestScale {
 
 double scale_at(const RestScale& scale, double time);
 
-/// The shape of one cloth, which must be as its scene has it.
+/// The shape of one cloth, which must be as its scene has it, but for what has torn since.
 class GrowingRest {
  public:
   GrowingRest(const RestScale& scale, const Cloth& cloth);
@@ -27,10 +28,14 @@ class GrowingRest {
  private:
   RestScale scale_;
   SceneDescription scene_;
+  double scale_of_scene_ = 1;  // that its shape at rest has
+  std::uint32_t tears_ = 0;    // of the cloth, that the scene has
   double last_ = 1;
 };
 
 /// That of a scene which goes on after `elapsed` seconds: all times become less by that.
 RestScale present_scale(const RestScale& scale, double elapsed);
+/// That of a scene whose shape at rest has the scale `now` already.
+RestScale scale_over(RestScale scale, double now);
 
 }  // namespace weft::tools

@@ -251,7 +251,21 @@ void add_bodies(ClothClass& cloth) {
             const auto used = use(c);
             return array_of_records(c.value.body_contacts());
           },
-          "Contacts of the last step, records of weft.BodyContact.");
+          "Contacts of the last step, records of weft.BodyContact.")
+      .def(
+          "torn",
+          [](const HeldCloth& c) {
+            const auto used = use(c);
+            return array_of_records(c.value.torn());
+          },
+          "All that broke when the last step ended, records of weft.Torn; kinds are those of Tear.")
+      .def(
+          "surface",
+          [](const HeldCloth& c) {
+            const auto used = use(c);
+            return rows<std::uint32_t>(c.value.surface());
+          },
+          "The triangles as tears have left them, an array (n, 3) of particles.");
 }
 
 }  // namespace

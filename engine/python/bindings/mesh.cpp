@@ -25,7 +25,8 @@ void add_materials(py::module_& m) {
       .field("damping_motion", &Material::damping_motion, "1/s")
       .field("drag", &Material::drag, "as Air.drag")
       .field("lift", &Material::lift, "as Air.lift")
-      .field("ram", &Material::ram, "as Air.ram");
+      .field("ram", &Material::ram, "as Air.ram")
+      .field("strength", &Material::strength, "N/m, at which it tears; infinite: it does not");
   m.def(
       "check_material", [](const Material& given) { check(check_material(given)); },
       py::arg("material"), "Raises Error with the field and the value that are refused.");

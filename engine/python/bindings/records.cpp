@@ -32,6 +32,20 @@ py::array array_from(py::handle value, const std::string& field) {
   return array;
 }
 
+/// Rows of a list, each with all fields.
+py::object whole_rows(py::handle value, const py::dtype& type, const py::bytes& defaults) {
+  if (!py::isinstance<py::list>(value)) return py::reinterpret_borrow<py::object>(value);
+  const py::object one = py::module_::import("numpy").attr("frombuffer")(defaults, type);
+  const py::tuple fields = one[py::int_(0)].attr("item")();
+  py::list rows;
+  for (const py::handle row : value) {
+    const py::object its = py::reinterpret_borrow<py::object>(row);
+    const bool is_short = py::isinstance<py::tuple>(row) && py::len(row) + 1 == fields.size();
+    rows.append(is_short ? its + py::make_tuple(fields[fields.size() - 1]) : its);
+  }
+  return rows;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> indices(py::handle value, const std::string& field) {
@@ -51,10 +65,12 @@ std::vector<std::uint32_t> index_rows(py::handle value, const std::string& field
   return checked(array, field);
 }
 
-py::array record_array(py::handle value, const py::dtype& type, const std::string& field) {
+py::array record_array(py::handle value, const py::dtype& type, const std::string& field,
+                       py::bytes defaults) {
   py::array array;
   try {
-    array = py::module_::import("numpy").attr("ascontiguousarray")(value, type);
+    array = py::module_::import("numpy").attr("ascontiguousarray")(
+        whole_rows(value, type, defaults), type);
   } catch (const py::error_already_set& error) {
     refuse(field + ": not records of " + py::str(type.attr("names")).cast<std::string>());
   }
@@ -85,11 +101,22 @@ py::dtype record_type<BodyContact>() {
   return fields.type(sizeof(BodyContact));
 }
 
+template <>
+py::dtype record_type<Torn>() {
+  RecordFields fields;
+  fields.add("kind", &Torn::kind);
+  fields.add("index", &Torn::index);
+  fields.add("particle", &Torn::particle);
+  fields.add("load", &Torn::load);
+  return fields.type(sizeof(Torn));
+}
+
 void add_records(py::module_& m) {
   for_each_element_kind([&]<class Element>(const ElementKind<Element>& kind) {
     m.attr(kind.type) = record_type<Element>();
   });
   m.attr("BodyContact") = record_type<BodyContact>();
+  m.attr("Torn") = record_type<Torn>();
 }
 
 }  // namespace weft::python

@@ -31,6 +31,7 @@ class RecordFields {
   static std::string format_of(std::uint32_t) { return "u4"; }
   static std::string format_of(double) { return "f8"; }
   static std::string format_of(ConstraintKind) { return "u1"; }
+  static std::string format_of(Tear) { return "u1"; }
   static std::string format_of(Vec3) { return "3f8"; }
   template <class T, std::size_t n>
   static std::string format_of(const std::array<T, n>&) {
@@ -54,14 +55,20 @@ py::dtype record_type() {
 }
 template <>
 py::dtype record_type<BodyContact>();
+template <>
+py::dtype record_type<Torn>();
 
 /// An array (n) of the type, as C has it in memory; from records, or a list of tuples.
-py::array record_array(py::handle value, const py::dtype& type, const std::string& field);
+/// defaults: of one record, as bytes. Rows that are tuples may leave out the last field.
+py::array record_array(py::handle value, const py::dtype& type, const std::string& field,
+                       py::bytes defaults);
 
 template <class T>
 std::vector<T> records(py::handle value, const std::string& field) {
   static_assert(std::is_trivially_copyable_v<T>);
-  const py::array array = record_array(value, record_type<T>(), field);
+  const T one{};
+  const py::bytes defaults(reinterpret_cast<const char*>(&one), sizeof(T));
+  const py::array array = record_array(value, record_type<T>(), field, defaults);
   std::vector<T> out(static_cast<std::size_t>(array.size()));
   if (!out.empty())
     std::memcpy(static_cast<void*>(out.data()), array.data(), out.size() * sizeof(T));

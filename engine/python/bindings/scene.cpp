@@ -35,6 +35,11 @@ std::vector<Element> checked_records(py::handle value, const std::string& list) 
 }
 
 void add_scene_enumerations(py::module_& m) {
+  py::enum_<Tear>(m, "Tear", "The kinds of tears; see scene.h.")
+      .value("constraint", Tear::constraint)
+      .value("seam", Tear::seam)
+      .value("anchor", Tear::anchor)
+      .value("sheet", Tear::sheet);
   py::enum_<ConstraintKind>(m, "ConstraintKind", "distance, or rope, which only pulls.")
       .value("distance", ConstraintKind::distance)
       .value("rope", ConstraintKind::rope);

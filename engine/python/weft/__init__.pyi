@@ -14,10 +14,19 @@ BendingElement: np.dtype[np.void]
 Anchor: np.dtype[np.void]
 Seam: np.dtype[np.void]
 Tether: np.dtype[np.void]
+Slider: np.dtype[np.void]
 BodyContact: np.dtype[np.void]
+Torn: np.dtype[np.void]
 
 
 class Error(ValueError): ...
+
+
+class Tear:
+    constraint: Tear
+    seam: Tear
+    anchor: Tear
+    sheet: Tear
 
 
 class ConstraintKind:
@@ -255,6 +264,7 @@ class Material:
     drag: float
     lift: float
     ram: float
+    strength: float
 
 
 class Ropes:
@@ -551,6 +561,8 @@ class StepReport:
     def untangling_work(self) -> float: ...
     @property
     def max_rail_gap(self) -> float: ...
+    @property
+    def torn(self) -> int: ...
 
 
 class Strain:
@@ -640,6 +652,8 @@ class Cloth:
     def remove_body(self, id: int) -> None: ...
     def body_load(self, id: int) -> BodyLoad: ...
     def body_contacts(self) -> NDArray[Any]: ...
+    def torn(self) -> NDArray[Any]: ...
+    def surface(self) -> NDArray[Any]: ...
 
 
 class ChangedMembrane:

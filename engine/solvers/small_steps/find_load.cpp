@@ -100,8 +100,10 @@ Blocks find_blocks(const Model& model, const SmallStepsLayout& layout,
   std::ranges::for_each(layout.constraint, add);
   std::ranges::for_each(layout.serial, add);
   for (const auto& corners : model.membrane.slots) blocks.slots_of.push_back(std::span(corners));
-  for (std::size_t i = 0; i < model.seams.size(); ++i)
-    blocks.slots_of.push_back(std::vector{model.seams.a[i], model.seams.b[i]});
+  for (std::size_t i = 0; i < model.seams.size(); ++i) {
+    if (!model.seams.is_broken(i))
+      blocks.slots_of.push_back(std::vector{model.seams.a[i], model.seams.b[i]});
+  }
   blocks.of_constraints = blocks.slots_of.size();
   for (const std::uint32_t slot : anchored) {
     if (model.inverse_mass[slot] > 0) blocks.slots_of.push_back(std::span(&slot, 1));
@@ -196,8 +198,9 @@ double mean_length(std::span<const Join> joins) {
 }
 
 void add_seams(const Model& model, std::vector<Join>& joins) {
-  for (std::size_t i = 0; i < model.seams.size(); ++i)
-    joins.push_back({model.seams.a[i], model.seams.b[i], 0});
+  for (std::size_t i = 0; i < model.seams.size(); ++i) {
+    if (!model.seams.is_broken(i)) joins.push_back({model.seams.a[i], model.seams.b[i], 0});
+  }
 }
 
 /// Along joins from the nearest of some particles, nearest by their number, to the farthest.

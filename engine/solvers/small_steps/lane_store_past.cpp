@@ -55,7 +55,8 @@ void LaneStore::go_on_from(const LaneStore& other, kernels::VectorsView v,
   past_.since_renewal = layout_.cell == other.layout_.cell ? its.since_renewal : tuning::kRenewal;
   past_.misplaced.clear();
   past_.misplaced.tangled = its.misplaced.tangled;  // triangles keep their numbers
-  past_.contacts = its.contacts;                    // and so do edges
+  past_.contacts = its.contacts;                    // and so do edges, but in a tear
+  if (model_.tears != other.model_.tears) past_.contacts.clear();
   const YarnPlaces &places = layout_.places(), &its_places = other.layout_.places();
   for_each_particle(model_, other.model_, [&](std::uint32_t slot, std::uint32_t its_slot) {
     std::size_t to = places.of(slot), at = its_places.of(its_slot);

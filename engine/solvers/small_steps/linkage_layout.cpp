@@ -8,6 +8,7 @@
 
 #include "engine/bytes_of.h"
 #include "engine/lists.h"
+#include "engine/model/chains.h"
 #include "engine/model/model.h"
 #include "engine/solvers/small_steps/constraints_of_yarns.h"
 #include "engine/tuning.h"
@@ -134,21 +135,11 @@ bool are_yarns_enough(const Model& model) {
 
 }  // namespace
 
-bool closes_few_loops(const Model& model) {
-  const auto all = static_cast<double>(model.constraints.size());
-  const auto joined = static_cast<double>(std::ranges::count(joined_slots(model), true));
-  return all - joined <= tuning::kChainLoops * all;
-}
-
-bool is_held_twice(const Model& model) {
-  return std::ranges::any_of(model.holds,
-                             [&](std::uint32_t slot) { return slot != model.holds.front(); });
-}
-
 bool is_linkage(const Model& model) {
   const ConstraintStore& s = model.constraints;
-  return s.size() > 0 && !s.has_springs() && !is_held_twice(model) && closes_few_loops(model) &&
-         !are_yarns_enough(model);
+  if (s.size() == 0 || s.has_springs() || is_held_twice(model) || !closes_few_loops(model))
+    return false;
+  return !s.strength.empty() || !are_yarns_enough(model);
 }
 
 LinkageLayout make_linkage_layout(const Model& model) {

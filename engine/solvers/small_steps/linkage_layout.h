@@ -38,11 +38,8 @@ struct LinkageLayout {
 /// The layout of all constraints of a model that is_linkage(); empty for any other model.
 LinkageLayout make_linkage_layout(const Model& model);
 
-/// Whether few constraints close a loop: chains, trees, bridges (a third do; of a grid half do).
-bool closes_few_loops(const Model& model);
-/// By more than one fixed particle: it may be too short.
-bool is_held_twice(const Model& model);
-/// Whether also none is a spring, one particle at most is held, and no yarns in lanes will do.
+/// Whether the model is one of chains (engine/model/chains.h), none is a spring, one particle at
+/// most is held, and no yarns in lanes will do: these do not tell what each constraint carries.
 bool is_linkage(const Model& model);
 
 }  // namespace weft

@@ -456,7 +456,8 @@ void ReferenceStore::go_on_from(const ReferenceStore& other, kernels::VectorsVie
     past_.at_limit.assign(at_limit_.size(), false);
   past_.misplaced.clear();
   past_.misplaced.tangled = other.past_.misplaced.tangled;  // triangles keep their numbers
-  past_.contacts = other.past_.contacts;                    // and so do edges
+  past_.contacts = other.past_.contacts;                    // and so do edges, but in a tear
+  if (model_.tears != other.model_.tears) past_.contacts.clear();
   for_each_particle(model_, other.model_, [&](std::uint32_t slot, std::uint32_t its_slot) {
     const Past& its = other.past_;
     ParticlePast past{its.v[its_slot], its.v_before[its_slot], its.moved[its_slot]};

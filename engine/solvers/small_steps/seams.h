@@ -41,6 +41,7 @@ class SeamThreads {
   template <class Points>
   void draw(const Points& points, double give, bool is_first) {
     for (std::size_t i = 0; i < multiplier_.size(); ++i) {
+      if (model_.seams.is_broken(i)) continue;
       if (is_first) multiplier_[i] = {};
       if (states_[i].is_released) continue;
       const std::uint32_t a = model_.seams.a[i], b = model_.seams.b[i];
@@ -59,7 +60,7 @@ class SeamThreads {
   template <class Points, class Closed>
   void end_substep(const Points& points, double give, double tolerance, Closed&& closed) {
     for (std::size_t i = 0; i < multiplier_.size(); ++i) {
-      if (!states_[i].is_open()) continue;
+      if (!states_[i].is_open() || model_.seams.is_broken(i)) continue;
       states_[i].left -= h_;
       const std::uint32_t a = model_.seams.a[i], b = model_.seams.b[i];
       const kernels::Vector d = points.difference(a, b);
@@ -70,6 +71,8 @@ class SeamThreads {
     }
   }
 
+  /// kg m, of the present substep.
+  kernels::Vector multiplier(std::size_t seam) const { return multiplier_[seam]; }
   std::span<const SeamState> states() const { return states_; }
   /// J, that open seams have done in the frame.
   double work() const { return work_; }

@@ -24,6 +24,7 @@ class StoredSmallSteps final : public SmallSteps {
         now_{model, settings},
         seams_(model),
         sliders_(model, settings.contact_tolerance),
+        carried_(model),
         linkage_(model, layout_.linkage),
         store_(now_, table) {
     now_.arrived.reserve(model.anchors.size() + linkage_.slots());
@@ -42,6 +43,7 @@ class StoredSmallSteps final : public SmallSteps {
     now_.has_past = !plan.placed && plan.h <= SubstepFormula::kLargestRatio * store_.past_h();
     seams_.begin(plan.seams, plan.projects() ? 0 : plan.h);
     sliders_.begin(plan.sliders, !plan.projects());
+    if (model_.may_tear) carried_.begin(plan.substeps);
     departures_.begin();
     store_.begin(x, v, plan, team);
     store_.accelerate(gravity, force);
@@ -82,6 +84,11 @@ class StoredSmallSteps final : public SmallSteps {
     set_aside();
     sweep({1, to * now_.settings.tolerance}, team);
   }
+  void weigh() override {
+    if (model_.may_tear)
+      carried_.add(store_.points(false), linkage_, seams_, now_.law_step().springs.scale);
+  }
+  const Carried& carried() const override { return carried_.mean(); }
   void judge(Team& team) override {
     if (model_.constraints.has_springs()) store_.judge_springs(team);
     store_.judge_membrane(team);
@@ -177,7 +184,8 @@ class StoredSmallSteps final : public SmallSteps {
   double take_contact_visits() override { return store_.bodies().take_visits(); }
   ContactMs take_contact_ms() override { return contact_times_.take(); }
   std::size_t bytes() const override {
-    return now_.bytes() + seams_.bytes() + sliders_.bytes() + linkage_.bytes() + store_.bytes();
+    return now_.bytes() + seams_.bytes() + sliders_.bytes() + carried_.bytes() + linkage_.bytes() +
+           store_.bytes();
   }
 
  private:
@@ -321,6 +329,7 @@ class StoredSmallSteps final : public SmallSteps {
   SliderThreads sliders_;
   Departures departures_;
   ContactTimes contact_times_;
+  CarriedForces carried_;
   Linkage linkage_;
   Store store_;
 };

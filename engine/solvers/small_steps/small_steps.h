@@ -13,6 +13,7 @@
 #include "engine/parallel/team.h"
 #include "engine/saving/archive.h"
 #include "engine/solvers/small_steps/body_report.h"
+#include "engine/solvers/small_steps/carried.h"
 #include "engine/solvers/small_steps/frame_to_do.h"
 #include "engine/solvers/small_steps/local_passes.h"
 #include "engine/solvers/small_steps/seams.h"
@@ -50,6 +51,10 @@ class SmallSteps {
   /// to tuning::kMended, is a force that grows with the error, and comes to rest; a whole sweep
   /// more (to = 0) would release what other constraints hold.
   virtual void mend(double to, Team& team) = 0;
+  /// After the sweeps of a substep, before anything is mended: adds up what elements carry.
+  virtual void weigh() = 0;
+  /// Loads in a frame that has ended, of a model that may tear.
+  virtual const Carried& carried() const = 0;
   /// After a sweep: finds the springs and triangles of fabric that are out of tolerance, and rigid
   /// constraints beside springs. Where all are rigid a sweep has found them.
   virtual void judge(Team& team) = 0;

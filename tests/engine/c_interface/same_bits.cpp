@@ -73,10 +73,10 @@ void check_equal(const weft_report& c, const StepReport& r) {
   CHECK(bool(c.asleep) == r.asleep);
   CHECK(std::array{c.substeps, c.halvings, c.scheme_fallbacks, c.contacts, c.body_contacts,
                    c.contact_failures, c.zones, c.intersecting, c.self_contacts, c.tangled,
-                   c.open_seams, c.late_seams, c.held_apart} ==
+                   c.open_seams, c.late_seams, c.held_apart, c.torn} ==
         std::array{r.substeps, r.halvings, r.scheme_fallbacks, r.contacts, r.body_contacts,
                    r.contact_failures, r.zones, r.intersecting, r.self_contacts, r.tangled,
-                   r.open_seams, r.late_seams, r.held_apart});
+                   r.open_seams, r.late_seams, r.held_apart, r.torn});
   CHECK(std::array{c.iterations, c.direction_updates, c.velocity_iterations, c.visits,
                    c.corrections} == std::array{r.iterations, r.direction_updates,
                                                 r.velocity_iterations, r.visits, r.corrections});
@@ -670,6 +670,46 @@ TEST_CASE("shapes of every kind") {
     REQUIRE(weft_place_body_vertices(b.c.get(), id, 4, numbers(corners)) == WEFT_OK);
     step_both(b, 1. / 60);
   }
+}
+
+TEST_CASE("what tears is the same") {
+  SceneDescription scene;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    scene.positions.push_back({0.1 * (i % 2), -0.1 * (i / 2), 0});
+    scene.masses.push_back(0.1);
+  }
+  scene.fixed = {0, 1};
+  scene.constraints = {{.a = 0, .b = 2, .rest_length = 0.1, .strength = 1},
+                       {.a = 1, .b = 3, .rest_length = 0.1, .strength = 1},
+                       {.a = 2, .b = 3, .rest_length = 0.1, .strength = 1}};
+  scene.surface = {{0, 2, 1}, {1, 2, 3}};
+  Both b = both(scene, {});
+  std::size_t torn = 0;
+  for (int i = 0; i < 10; ++i) {
+    weft_report report = initial(weft_init_report);
+    REQUIRE(weft_step(b.c.get(), 0.02, nullptr, &report) == WEFT_OK);
+    const auto in_cpp = b.cpp.step(0.02);
+    REQUIRE(in_cpp);
+    CHECK(report.torn == in_cpp.value().torn);
+    const std::vector<Torn> list = b.cpp.torn();
+    std::vector<weft_torn> in_c(list.size() + 1, initial(weft_init_torn));
+    std::size_t count = 0;
+    REQUIRE(weft_torn_of(b.c.get(), in_c.size(), in_c.data(), &count) == WEFT_OK);
+    REQUIRE(count == list.size());
+    for (std::size_t k = 0; k < count; ++k) {
+      CHECK(in_c[k].kind == static_cast<int>(list[k].kind));
+      CHECK(in_c[k].index == list[k].index);
+      CHECK(in_c[k].particle == list[k].particle);
+      CHECK(in_c[k].load == list[k].load);
+    }
+    torn += count;
+    std::array<std::uint32_t, 6> corners{};
+    REQUIRE(weft_surface_of(b.c.get(), 2, corners.data(), &count) == WEFT_OK);
+    REQUIRE(count == 2);
+    CHECK(corners[4] == b.cpp.surface()[1][1]);
+    check_equal(b);
+  }
+  CHECK(torn > 0);
 }
 
 }  // namespace

@@ -52,7 +52,8 @@ def entry_of(element):
 def write_scene(file, scene, bodies):
     """bodies: entries as the file has them."""
     constraints = [[a, b, length, ["distance", "rope"][kind], compliance]
-                   for a, b, length, kind, compliance in scene.constraints.tolist()]
+                   + ([strength] if np.isfinite(strength) else [])
+                   for a, b, length, kind, compliance, strength in scene.constraints.tolist()]
     damping, air = scene.damping, scene.air
     pathlib.Path(file).write_text(json.dumps({
         "positions": scene.positions.tolist(), "masses": scene.masses.tolist(),

@@ -471,12 +471,12 @@ TEST_CASE("the format is the one of its version") {
                 static_cast<unsigned long long>(checksum(state)), model.size(),
                 static_cast<unsigned long long>(checksum(model)));
   }
-  CHECK(state[8] == std::byte{9});
-  CHECK(model[8] == std::byte{10});
-  CHECK(state.size() == 11188);
-  CHECK(checksum(state) == 0x6ba101b50d69b87c);
-  CHECK(model.size() == 764);
-  CHECK(checksum(model) == 0x59ab636687469972);
+  CHECK(state[8] == std::byte{10});
+  CHECK(model[8] == std::byte{47});
+  CHECK(state.size() == 11192);
+  CHECK(checksum(state) == 0x8dd708c377b041a5);
+  CHECK(model.size() == 796);
+  CHECK(checksum(model) == 0xc57e488cfcb3ec58);
 }
 
 }  // namespace

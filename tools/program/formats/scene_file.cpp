@@ -9,6 +9,8 @@
 #include <set>
 #include <utility>
 
+#include "engine/model/change.h"
+#include "engine/model/model.h"
 #include "engine/model/pressures.h"
 #include "tools/program/files/json_reading.h"
 #include "tools/program/files/text_file.h"
@@ -176,11 +178,13 @@ std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>
 }
 
 SceneDescription present_scene(const SceneDescription& scene, const Cloth& cloth) {
-  SceneDescription present = scene;
-  present.pressures = with_volumes(scene.pressures, scene.surface, [&](std::uint32_t i) {
-    return kernels::Vector{scene.positions[i].x, scene.positions[i].y, scene.positions[i].z};
-  });
-  present.velocities.resize(scene.positions.size());
+  const bool is_torn = cloth.model()->tears > 0;
+  SceneDescription present = is_torn ? description_of(*cloth.model()) : scene;
+  if (!is_torn)
+    present.pressures = with_volumes(scene.pressures, scene.surface, [&](std::uint32_t i) {
+      return kernels::Vector{scene.positions[i].x, scene.positions[i].y, scene.positions[i].z};
+    });
+  present.velocities.resize(present.positions.size());
   for (std::uint32_t i = 0; i < cloth.particle_count(); ++i) {
     present.positions[i] = cloth.position(i);
     present.velocities[i] = cloth.velocity(i);

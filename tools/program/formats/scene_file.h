@@ -41,9 +41,9 @@ std::string scene_text(const SceneDescription& scene, const std::vector<PinMove>
                        const std::vector<SceneEvent>& events = {},
                        const RestScale& rest_scale = {});
 
-/// The scene with the cloth's present positions and velocities, to be continued from there. Write
-/// it with present_moves() and present_events(): their times begin anew, "from" gives the places of
-/// their pins, and what happened already is how the scene begins.
+/// The scene with the cloth's present positions and velocities, torn as it is, to be continued from
+/// there. Write it with present_moves() and present_events(): their times begin anew, "from" gives
+/// the places of their pins, and what happened already is how the scene begins.
 SceneDescription present_scene(const SceneDescription& scene, const Cloth& cloth);
 
 }  // namespace weft::tools

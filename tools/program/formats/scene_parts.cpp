@@ -133,14 +133,17 @@ double read_rest_length(const Json& json, const std::string& place) {
 /// There are many of them: their fields are a row.
 template <>
 Constraint read_fields_of(const Json& json, const std::string& place) {
-  if (!json.is_array() || json.size() < 2 || json.size() > 5)
-    refuse(place, "[a, b, rest length, kind, compliance]", json);
+  if (!json.is_array() || json.size() < 2 || json.size() > 6)
+    refuse(place, "[a, b, rest length, kind, compliance, strength]", json);
   Constraint constraint;
   constraint.a = read_index(json[0], place + "[0]");
   constraint.b = read_index(json[1], place + "[1]");
   constraint.rest_length = json.size() > 2 ? read_rest_length(json[2], place + "[2]") : kMeasured;
   if (json.size() > 3) read_value(json[3], place + "[3]", Values::kind, constraint.kind);
   if (json.size() > 4) constraint.compliance = read_number(json[4], place + "[4]");
+  if (json.size() > 5) {
+    read_value(json[5], place + "[5]", Values::not_negative_or_infinite, constraint.strength);
+  }
   return constraint;
 }
 
@@ -178,9 +181,11 @@ std::string row_of(const T& value) {
 template <>
 std::string row_of(const Constraint& constraint) {
   Json row{constraint.a, constraint.b, constraint.rest_length};
-  const bool is_spring = constraint.compliance > 0;
+  const bool may_break = !std::isinf(constraint.strength);
+  const bool is_spring = constraint.compliance > 0 || may_break;
   if (constraint.kind == ConstraintKind::rope || is_spring) row.push_back(json_of(constraint.kind));
   if (is_spring) row.push_back(constraint.compliance);
+  if (may_break) row.push_back(constraint.strength);
   return row.dump();
 }
 

@@ -31,7 +31,8 @@ constexpr Field kFields[] = {{"density", &Material::density},
                              {"damping_motion", &Material::damping_motion},
                              {"drag", &Material::drag},
                              {"lift", &Material::lift},
-                             {"ram", &Material::ram}};
+                             {"ram", &Material::ram},
+                             {"strength", &Material::strength}};
 
 struct Change {
   std::string_view option;
@@ -47,7 +48,8 @@ constexpr Change kChanges[] = {
      &MaterialOptions::damping,
      {&Material::damping_stretch, &Material::damping_bending}},
     {"--drag", &MaterialOptions::drag, {&Material::drag, &Material::drag}},
-    {"--lift", &MaterialOptions::lift, {&Material::lift, &Material::lift}}};
+    {"--lift", &MaterialOptions::lift, {&Material::lift, &Material::lift}},
+    {"--strength", &MaterialOptions::strength, {&Material::strength, &Material::strength}}};
 
 std::string names_of_materials() {
   std::string names;
@@ -110,6 +112,7 @@ void add_material_options(Verb verb, MaterialOptions& options) {
   verb.option("--damping", options.damping, "material: s, of stretch and bending");
   verb.option("--drag", options.drag, "material: drag of the air");
   verb.option("--lift", options.lift, "material: lift of the air");
+  verb.option("--strength", options.strength, "material: N/m, at which it tears");
   verb.option("--wind", options.wind, "with a material: x,y,z in m/s");
 }
 

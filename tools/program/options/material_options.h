@@ -16,7 +16,7 @@ struct MaterialOptions {
   std::optional<double> stretch;        ///< N/m, of warp and weft
   std::optional<double> shear, bend, density;
   std::optional<double> damping;  ///< s, of stretch and bending
-  std::optional<double> drag, lift;
+  std::optional<double> drag, lift, strength;
   std::optional<std::string> wind;  ///< x,y,z in m/s
 };
 

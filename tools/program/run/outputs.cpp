@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/model/model.h"
 #include "tools/program/formats/obj_mesh.h"
 #include "tools/program/formats/scene_file.h"
 #include "tools/program/text/file_ending.h"
@@ -82,10 +83,12 @@ Result<void> Outputs::add_series(const NumberedName& name, Format format) {
 std::string Outputs::text(Format format, const Cloth& cloth, double elapsed) const {
   const SceneDescription& scene = source_->description;
   if (format == Format::mesh) return obj_text(source_->mesh, scene, particle_positions(cloth));
+  RestScale rest_scale = present_scale(source_->rest_scale, elapsed);
+  if (cloth.model()->tears > 0)  // the scene is as torn, and has its present shape at rest
+    rest_scale = scale_over(rest_scale, scale_at(source_->rest_scale, elapsed));
   return scene_text(present_scene(scene, cloth), present_moves(source_->moves, scene, elapsed),
                     particle_faces(source_->mesh), present_bodies(source_->bodies, elapsed),
-                    present_events(source_->events, elapsed),
-                    present_scale(source_->rest_scale, elapsed));
+                    present_events(source_->events, elapsed), rest_scale);
 }
 
 void Outputs::add_frame(const Cloth& cloth, const StepReport& report, int frame, double elapsed) {

@@ -384,6 +384,7 @@ std::string to_table(const RunReport& report) {
         fmt::format("{}, {}, closed ones {:.3g} m apart at most, {:.3g} J", summary.model.seams,
                     open_seams_text(total), total.max_seam_gap, total.seam_work));
   }
+  if (total.torn > 0) row("torn", counted(total.torn, "break"));
   if (total.held_apart > 0) row("held", held_text(total));
   row("work",
       fmt::format("{:.4g} iterations and {:.3g} direction updates per step, {}, {}",

@@ -78,7 +78,10 @@ Result<VtkSeries> VtkSeries::open(const std::string& path, const SceneSource& so
 void VtkSeries::add_frame(const Cloth& cloth, double elapsed) {
   std::vector<Vec3> velocities(cloth.particle_count());
   if (auto read = cloth.read_velocities(velocities); !read) written_ = read;
-  add_sample(particle_positions(cloth), velocities, elapsed);
+  std::vector<Vec3> positions = particle_positions(cloth);
+  for (auto* vectors : {&positions, &velocities})
+    vectors->resize(source_->description.positions.size());  // a torn cloth has more
+  add_sample(positions, velocities, elapsed);
 }
 
 void VtkSeries::add_sample(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities,

@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "engine/erase_repeated.h"
+#include "engine/model/model.h"
 #include "engine/saving/sealed.h"
 #include "tools/program/viewer/integers.h"
 #include "tools/program/viewer/sections.h"
@@ -153,6 +154,7 @@ MotionRecorder::MotionRecorder(MotionRecorder&&) noexcept = default;
 MotionRecorder::~MotionRecorder() = default;
 
 void MotionRecorder::add_frame(const Cloth& cloth, const StepReport& report, double elapsed) {
+  take_splits(cloth);
   add_sample(particle_positions(cloth), elapsed);
   add_contacts(cloth);
   figures_->add("time", elapsed);
@@ -163,15 +165,46 @@ void MotionRecorder::add_frame(const Cloth& cloth, const StepReport& report, dou
 }
 
 void MotionRecorder::add_sample(const std::vector<Vec3>& particles, double elapsed) {
-  points_.add_sample(particles);
+  const std::size_t described = source_->description.positions.size();
+  const std::vector<double> stretch = stretch_(std::span(particles).first(described));
+  if (model_->may_tear)
+    kept_.push_back({particles, stretch});
+  else
+    add_particles(particles, stretch);
   bodies_.add_sample(particles, elapsed);
-  add_stretch(particles);
+}
+
+void MotionRecorder::add_particles(const std::vector<Vec3>& particles,
+                                   const std::vector<double>& stretch) {
+  points_.add_sample(particles);
+  add_stretch(stretch);
+}
+
+void MotionRecorder::take_splits(const Cloth& cloth) {
+  for (const Torn& torn : cloth.torn()) {
+    if (torn.kind != Tear::sheet) continue;
+    split_from_.push_back(torn.index);
+    surface_ = cloth.surface();
+  }
+}
+
+void MotionRecorder::add_kept() {
+  const std::size_t described = source_->description.positions.size();
+  last_stretch_.resize(described + split_from_.size());
+  for (Sample& sample : kept_) {
+    auto& [particles, stretch] = sample;
+    for (std::size_t i = stretch.size(); i < last_stretch_.size(); ++i)
+      stretch.push_back(stretch[split_from_[i - described]]);
+    for (std::size_t i = particles.size(); i < last_stretch_.size(); ++i)
+      particles.push_back(particles[split_from_[i - described]]);
+    add_particles(particles, stretch);
+  }
+  kept_.clear();
 }
 
 /// The difference from the sample before, from 0 at the start.
-void MotionRecorder::add_stretch(const std::vector<Vec3>& particles) {
-  std::vector<std::int32_t> changes(particles.size());
-  const std::vector<double> stretch = stretch_(particles);
+void MotionRecorder::add_stretch(const std::vector<double>& stretch) {
+  std::vector<std::int32_t> changes(stretch.size());
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const std::int32_t quanta = quanta_of(stretch[i], stretch_quantum_);
     changes[i] = quanta - last_stretch_[i];
@@ -193,7 +226,7 @@ void MotionRecorder::add_contacts(const Cloth& cloth) {
 
 Json MotionRecorder::header(Sections& sections) const {
   const SceneDescription& scene = source_->description;
-  const auto triangles = triangles_of(particle_faces(source_->mesh));
+  const auto triangles = surface_.empty() ? triangles_of(particle_faces(source_->mesh)) : surface_;
   sections.add("places", points_.bytes());
   sections.add("stretch", stretch_bytes_);
   sections.add("contacts", contact_bytes_);
@@ -203,7 +236,7 @@ Json MotionRecorder::header(Sections& sections) const {
   sections.add_numbers("seams", ends_of(scene.seams));
   add_structure(sections, scene, *model_, source_->mesh.cells);
   Json header{{"scene", source_->title()},
-              {"particles", scene.positions.size()},
+              {"particles", last_stretch_.size()},
               {"samples", figures_->samples},
               {"dt", dt_},
               {"up", source_->up == &Vec3::z ? "z" : "y"},
@@ -217,7 +250,8 @@ Json MotionRecorder::header(Sections& sections) const {
   return header;
 }
 
-std::string MotionRecorder::bytes() const {
+std::string MotionRecorder::bytes() {
+  add_kept();
   Sections sections;
   const std::string text = header(sections).dump(-1, ' ', false, Json::error_handler_t::replace);
   const auto size = static_cast<std::uint32_t>(text.size());

@@ -9,6 +9,8 @@
 
 #include <weft/weft.h>
 
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -33,12 +35,15 @@ class MotionRecorder {
   /// `elapsed` seconds after the start.
   void add_frame(const Cloth& cloth, const StepReport& report, double elapsed);
   /// The file.
-  std::string bytes() const;
+  std::string bytes();
 
  private:
   struct Figures;
   void add_sample(const std::vector<Vec3>& particles, double elapsed);
-  void add_stretch(const std::vector<Vec3>& particles);
+  void add_particles(const std::vector<Vec3>& particles, const std::vector<double>& stretch);
+  void take_splits(const Cloth& cloth);
+  void add_kept();
+  void add_stretch(const std::vector<double>& stretch);
   void add_contacts(const Cloth& cloth);
   Json header(Sections& sections) const;
 
@@ -55,6 +60,16 @@ class MotionRecorder {
   std::vector<std::int32_t> last_stretch_;
   std::string stretch_bytes_, contact_bytes_;
   std::unique_ptr<Figures> figures_;
+
+  /// Of cloth that may tear: a file has the particles and triangles of the end from the start on.
+  /// Where a particle is not split yet, both are in one place.
+  struct Sample {
+    std::vector<Vec3> particles;
+    std::vector<double> stretch;
+  };
+  std::vector<Sample> kept_;
+  std::vector<std::uint32_t> split_from_;  ///< of each particle that the scene does not describe
+  std::vector<std::array<std::uint32_t, 3>> surface_;  ///< as torn; empty: as the mesh has it
 };
 
 /// An error if the bytes are no such file, or damaged.

@@ -461,10 +461,10 @@ TEST_CASE("errors name the place in the file") {
         "fixed[0]: expected a particle number, not 4294967295");
   CHECK(error_with(R"("fixed": [0.5])") == "fixed[0]: expected a particle number, not 0.5");
   CHECK(error_with(R"("constraints": [[0,1],[1]])") ==
-        "constraints[1]: expected [a, b, rest length, kind, compliance], not [1]");
+        "constraints[1]: expected [a, b, rest length, kind, compliance, strength], not [1]");
   CHECK(
-      error_with(R"("constraints": [[0,1,1,"rope",0,0]])") ==
-      R"(constraints[0]: expected [a, b, rest length, kind, compliance], not [0,1,1,"rope",0,0])");
+      error_with(R"("constraints": [[0,1,1,"rope",0,0,0]])") ==
+      R"(constraints[0]: expected [a, b, rest length, kind, compliance, strength], not [0,1,1,"rope",0,0,0])");
   CHECK(error_with(R"("constraints": [[0,1,-2]])") ==
         "constraints[0][2]: expected a length above 0, not -2");
   CHECK(error_with(R"("constraints": [[0,1,1,"spring"]])") ==

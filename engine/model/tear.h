@@ -1,0 +1,37 @@
+/// Models of cloth that has torn (Tear in weft/scene.h).
+///
+/// The description is changed at the torn place, and a model is made of it, as changes of numbers
+/// are (change.h). So whatever is known of models holds for a torn one.
+#pragma once
+
+#include <weft/weft.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/model/model.h"
+
+namespace weft {
+
+/// A thing that is to break.
+struct Break {
+  Tear kind = Tear::constraint;
+  std::uint32_t index = 0;  // in the description; of a sheet the particle
+  double load = 0;          // N or N/m
+  kernels::Vector along{};  // of a sheet: the direction of the largest tension
+};
+
+struct TornModel {
+  std::shared_ptr<const Model> model;
+  std::vector<Torn> torn;  // all that broke
+};
+
+/// In each group the first that can break does. A sheet cannot be split at each particle. A
+/// constraint along an edge of a sheet breaks by a split of one of its ends, if one can be split.
+/// x: of the particles, by slots.
+TornModel torn_model(const Model& model, std::span<const std::vector<Break>> groups,
+                     const kernels::Vectors& x);
+
+}  // namespace weft
