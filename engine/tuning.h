@@ -208,8 +208,8 @@ inline constexpr double kMisplacedSpeed = 0.5;
 inline constexpr double kPlacedSpeed = 0.005;
 /// Bending is solved for n substeps at once while (n h)^2 times a bound of the stiffest swing
 /// (BendingRows::stiffest) is at most kBendingGroup, and n at most kLongestGroup
-/// (engine/solvers/small_steps/bending_frame.h). Impulses of a swing by itself are stable to 4, and
-/// far beyond that, by bounds in the mean, cloth gained energy. Without groups a skirt takes 1.6
+/// (engine/solvers/small_steps/bending_frame.h). At 2 a damped sheet that flies is torn
+/// about, though impulses of a swing by itself are stable to 4. Without groups a skirt takes 1.6
 /// times as long (perf/tried.md).
 inline constexpr double kBendingGroup = 1;
 inline constexpr int kLongestGroup = 8;
