@@ -7,7 +7,7 @@
 
 #include "engine/geometry.h"
 #include "engine/hypotenuse.h"
-#include "engine/mesh/partition.h"
+#include "engine/partition.h"
 
 namespace weft::mesh {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "engine/mesh/families.h"
-#include "engine/mesh/partition.h"
 #include "engine/mesh/warp.h"
+#include "engine/partition.h"
 
 namespace weft::mesh {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "engine/geometry.h"
 #include "engine/mesh/mesh_input.h"
-#include "engine/mesh/partition.h"
+#include "engine/partition.h"
 
 namespace weft::mesh {
 namespace {

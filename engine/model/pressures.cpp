@@ -6,6 +6,7 @@
 #include <numeric>
 #include <string>
 
+#include "engine/partition.h"
 #include "engine/validation.h"
 
 namespace weft {
@@ -25,12 +26,6 @@ std::vector<DirectedSide> sorted_sides(std::span<const SurfaceTriangle> triangle
   }
   std::ranges::sort(sides);
   return sides;
-}
-
-/// Whose parent is itself names a piece.
-std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
 }
 
 Result<void> validate_listed(const std::string& field, const Pressure& part, std::size_t count) {
@@ -103,19 +98,16 @@ AirPieces find_air_pieces(std::span<const SurfaceTriangle> triangles) {
   std::uint32_t corners = 0;
   for (const SurfaceTriangle& t : triangles)
     corners = std::max({corners, t[0] + 1, t[1] + 1, t[2] + 1});
-  std::vector<std::uint32_t> parent(corners);
-  std::iota(parent.begin(), parent.end(), 0);
+  Partition joined(corners);
   for (const SurfaceTriangle& t : triangles) {
-    for (const std::uint32_t other : {t[1], t[2]})
-      parent[root_of(parent, other)] = root_of(parent, t[0]);
+    for (const std::uint32_t other : {t[1], t[2]}) joined.join(t[0], other);
   }
   AirPieces pieces;
-  std::map<std::uint32_t, std::uint32_t> piece_of_root;
+  std::map<std::uint32_t, std::uint32_t> piece_of_first;
   std::vector<std::vector<SurfaceTriangle>> of_piece;
   for (const SurfaceTriangle& t : triangles) {
-    const auto next = static_cast<std::uint32_t>(piece_of_root.size());
-    const std::uint32_t piece =
-        piece_of_root.try_emplace(root_of(parent, t[0]), next).first->second;
+    const auto next = static_cast<std::uint32_t>(piece_of_first.size());
+    const std::uint32_t piece = piece_of_first.try_emplace(joined.first(t[0]), next).first->second;
     if (piece == of_piece.size()) of_piece.emplace_back();
     of_piece[piece].push_back(t);
     pieces.of.push_back(piece);

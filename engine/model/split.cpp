@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
 #include <utility>
 
+#include "engine/partition.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -33,31 +33,12 @@ Vector unit(Vector v) {
   return l > 0 ? (1 / l) * v : v;
 }
 
-/// Numbers that are joined step by step.
-class Joined {
- public:
-  explicit Joined(std::size_t count) : first_(count) {
-    std::iota(first_.begin(), first_.end(), 0u);
-  }
-  std::size_t first_of(std::size_t i) {
-    while (first_[i] != i) i = first_[i] = first_[first_[i]];
-    return i;
-  }
-  void join(std::size_t i, std::size_t j) {
-    const auto [low, high] = std::minmax({first_of(i), first_of(j)});
-    first_[high] = low;
-  }
-
- private:
-  std::vector<std::size_t> first_;
-};
-
 /// The triangles of a sheet around a particle.
 class Star {
  public:
   struct Spoke {
     std::uint32_t end = 0;
-    std::vector<std::size_t> triangles{};  // numbers in the star
+    std::vector<std::uint32_t> triangles{};  // numbers in the star
     bool is_cuttable = false;
     bool is_border() const { return triangles.size() == 1; }
   };
@@ -95,14 +76,14 @@ class Star {
   }
 
   /// Per triangle: the number of its part after cuts along these spokes.
-  std::vector<std::size_t> parts(std::span<const std::uint32_t> cut) const {
-    Joined joined(triangles_.size());
+  std::vector<std::uint32_t> parts(std::span<const std::uint32_t> cut) const {
+    Partition joined(triangles_.size());
     for (const Spoke& spoke : spokes_) {
       if (has(cut, spoke.end)) continue;
-      for (const std::size_t i : spoke.triangles) joined.join(i, spoke.triangles.front());
+      for (const std::uint32_t i : spoke.triangles) joined.join(i, spoke.triangles.front());
     }
-    std::vector<std::size_t> parts(triangles_.size());
-    for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = joined.first_of(i);
+    std::vector<std::uint32_t> parts(triangles_.size());
+    for (std::uint32_t i = 0; i < parts.size(); ++i) parts[i] = joined.first(i);
     return parts;
   }
 
@@ -169,7 +150,7 @@ class Star {
   }
   void find_spokes() {
     std::map<std::uint32_t, std::size_t> at;
-    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
       for (const std::uint32_t end : others(i)) {
         const auto [found, is_new] = at.try_emplace(end, spokes_.size());
         if (is_new) spokes_.push_back({end});
@@ -367,17 +348,17 @@ std::vector<bool> find_cut(const Star& star, Vector along, bool is_fixed) {
   const bool is_torn_off =
       is_fixed && star.is_open() && std::abs(dot(star.opening(), along)) > std::sqrt(0.5);
   if (is_torn_off) return std::vector<bool>(count, true);
-  std::vector<std::size_t> parts = star.parts({});
+  std::vector<std::uint32_t> parts = star.parts({});
   const auto are_one = [&] {
-    return std::ranges::all_of(parts, [&](std::size_t part) { return part == parts[0]; });
+    return std::ranges::all_of(parts, [&](std::uint32_t part) { return part == parts[0]; });
   };
   if (are_one()) parts = star.parts(star.cut_across(along));
   if (are_one()) return is_fixed ? std::vector<bool>(count, true) : std::vector<bool>();
-  std::map<std::size_t, double> pull;
+  std::map<std::uint32_t, double> pull;
   for (std::size_t i = 0; i < count; ++i)
     pull[parts[i]] += star.area(i) * dot(star.middle_of(i), along);
   const auto most = std::ranges::max_element(
-      pull, {}, [](const std::pair<const std::size_t, double>& part) { return part.second; });
+      pull, {}, [](const std::pair<const std::uint32_t, double>& part) { return part.second; });
   std::vector<bool> goes(count);
   for (std::size_t i = 0; i < count; ++i) goes[i] = parts[i] == most->first;
   return goes;

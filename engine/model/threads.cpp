@@ -1,10 +1,10 @@
 #include "engine/model/threads.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "engine/lists.h"
+#include "engine/partition.h"
 
 namespace weft {
 namespace {
@@ -18,27 +18,20 @@ struct Side {
 /// The pieces of a surface: triangles with a common corner are of one.
 class SurfacePieces {
  public:
-  explicit SurfacePieces(const Model& model) : first_(model.slots()), is_in_(model.slots()) {
-    std::iota(first_.begin(), first_.end(), 0u);
+  explicit SurfacePieces(const Model& model) : joined_(model.slots()), is_in_(model.slots()) {
     for (const auto& triangle : model.surface) {
       for (const std::uint32_t corner : triangle) {
         is_in_[corner] = true;
-        const auto [low, high] = std::minmax({first_of(triangle[0]), first_of(corner)});
-        first_[high] = low;
+        joined_.join(triangle[0], corner);
       }
     }
   }
   bool have_one(std::uint32_t a, std::uint32_t b) {
-    return is_in_[a] && is_in_[b] && first_of(a) == first_of(b);
+    return is_in_[a] && is_in_[b] && joined_.first(a) == joined_.first(b);
   }
 
  private:
-  std::uint32_t first_of(std::uint32_t slot) {
-    while (first_[slot] != slot) slot = first_[slot] = first_[first_[slot]];
-    return slot;
-  }
-
-  std::vector<std::uint32_t> first_;
+  Partition joined_;
   std::vector<bool> is_in_;
 };
 

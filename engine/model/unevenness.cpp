@@ -2,34 +2,12 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <vector>
+
+#include "engine/partition.h"
 
 namespace weft {
 namespace {
-
-/// Disjoint sets of particles, with the smallest as the root of each.
-class Parts {
- public:
-  explicit Parts(std::size_t particles) : parent_(particles) {
-    std::iota(parent_.begin(), parent_.end(), 0u);
-  }
-  std::uint32_t of(std::uint32_t particle) {
-    while (parent_[particle] != particle) {
-      parent_[particle] = parent_[parent_[particle]];
-      particle = parent_[particle];
-    }
-    return particle;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = of(a);
-    b = of(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 struct Part {
   double least = std::numeric_limits<double>::infinity(), most = 0;  // inverse mass
@@ -42,7 +20,7 @@ struct Part {
 Unevenness find_unevenness(std::span<const double> inverse_mass, std::span<const std::uint32_t> a,
                            std::span<const std::uint32_t> b, std::span<const double> rest_length) {
   const auto is_free = [&](std::uint32_t particle) { return inverse_mass[particle] > 0; };
-  Parts parts(inverse_mass.size());
+  Partition parts(inverse_mass.size());
   for (std::size_t c = 0; c < a.size(); ++c) {
     if (is_free(a[c]) && is_free(b[c])) parts.join(a[c], b[c]);
   }
@@ -50,7 +28,7 @@ Unevenness find_unevenness(std::span<const double> inverse_mass, std::span<const
   for (std::size_t c = 0; c < a.size(); ++c) {
     for (const std::uint32_t end : {a[c], b[c]}) {
       if (!is_free(end)) continue;
-      Part& part = sums[parts.of(end)];
+      Part& part = sums[parts.first(end)];
       part.least = std::min(part.least, inverse_mass[end]);
       part.most = std::max(part.most, inverse_mass[end]);
       part.length += rest_length[c];

@@ -135,6 +135,18 @@ Rule rule_of_list(const SceneDescription&, const std::vector<Constraint>& constr
   return {};
 }
 
+/// A tear takes the weights of the elements that it cuts.
+Rule rule_of_list(const SceneDescription& d, const std::vector<BendingElement>& elements) {
+  const auto may_break = [](const auto& e) { return std::isfinite(e.strength); };
+  if (std::ranges::any_of(d.constraints, may_break) || std::ranges::any_of(d.membrane, may_break))
+    return {};
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    const bool is_cut = std::ranges::all_of(elements[i].weights, [](double w) { return w == 0; });
+    if (is_cut) return refuse(element("bending", i) + ".weights", "must not all be 0", "0");
+  }
+  return {};
+}
+
 Rule rule_of_list(const SceneDescription& d, const std::vector<Anchor>& anchors) {
   if (anchors.empty()) return {};
   std::vector<bool> taken(d.positions.size()), fixed(taken.size());

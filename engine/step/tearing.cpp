@@ -7,12 +7,12 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "engine/model/pressures.h"
 #include "engine/model/tear.h"
+#include "engine/partition.h"
 #include "engine/solvers/small_steps/small_steps.h"
 
 namespace weft {
@@ -84,10 +84,10 @@ class Overloads {
 
   /// Those that are side by side, the worst first.
   std::vector<std::vector<Break>> groups() {
-    join_all();
+    Partition joined = join_all();
     std::ranges::stable_sort(found_, std::ranges::greater(), &Overload::ratio);
     std::map<std::uint32_t, std::vector<Break>> group;
-    for (const Overload& each : found_) group[first_of(each.slots[0])].push_back(each.what);
+    for (const Overload& each : found_) group[joined.first(each.slots[0])].push_back(each.what);
     std::vector<std::vector<Break>> groups;
     for (auto& [first, breaks] : group) groups.push_back(std::move(breaks));
     return groups;
@@ -202,21 +202,14 @@ class Overloads {
 
   // Overloaded particles that an edge joins are side by side.
 
-  std::uint32_t first_of(std::uint32_t slot) {
-    while (first_[slot] != slot) slot = first_[slot] = first_[first_[slot]];
-    return slot;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    if (!is_overloaded_[a] || !is_overloaded_[b]) return;
-    const auto [low, high] = std::minmax({first_of(a), first_of(b)});
-    first_[high] = low;
-  }
-  void join_all() {
-    is_overloaded_.resize(model_.slots());
-    first_.resize(model_.slots());
-    std::iota(first_.begin(), first_.end(), 0u);
+  Partition join_all() const {
+    std::vector<bool> is_overloaded(model_.slots());
     for (const Overload& each : found_)
-      for (const std::uint32_t slot : each.slots) is_overloaded_[slot] = true;
+      for (const std::uint32_t slot : each.slots) is_overloaded[slot] = true;
+    Partition joined(model_.slots());
+    const auto join = [&](std::uint32_t a, std::uint32_t b) {
+      if (is_overloaded[a] && is_overloaded[b]) joined.join(a, b);
+    };
     for (const Overload& each : found_) join(each.slots[0], each.slots[1]);
     const ConstraintStore& s = model_.constraints;
     for (std::size_t c = 0; c < s.size(); ++c) join(s.a[c], s.b[c]);
@@ -227,6 +220,7 @@ class Overloads {
         join(c, a);
       }
     }
+    return joined;
   }
 
   const State& s_;
@@ -234,8 +228,6 @@ class Overloads {
   const Carried& carried_;
   std::vector<Overload> found_;
   std::vector<Vector> pulls_;
-  std::vector<bool> is_overloaded_;
-  std::vector<std::uint32_t> first_;
 };
 
 /// The threads of the present step go on with the state.

@@ -178,6 +178,7 @@ TEST_CASE("a material that is no material is refused by name, index and value") 
   check_refused([](auto& s) { s.bending[0].particles[1] = 0; },
                 {"bending[0].particles[1]", "twice", "(0)"});
   check_refused([](auto& s) { s.bending[0].weights[1] = -1.9; }, {"bending[0].weights", "sum"});
+  check_refused([](auto& s) { s.bending[0].weights = {}; }, {"bending[0].weights", "(0)"});
   check_refused([](auto& s) { s.bending[0].weights[2] = kInfinity; },
                 {"bending[0].weights[2]", "(inf)"});
   check_refused([](auto& s) { s.bending[0].weights[3] = 1; },

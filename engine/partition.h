@@ -1,12 +1,13 @@
-/// Which of n things belong together.
+/// Things that are joined step by step, and which of them belong together then.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <utility>
 #include <vector>
 
-namespace weft::mesh {
+namespace weft {
 
 class Partition {
  public:
@@ -31,4 +32,4 @@ class Partition {
   std::vector<std::uint32_t> parent_;  ///< never after its children
 };
 
-}  // namespace weft::mesh
+}  // namespace weft
