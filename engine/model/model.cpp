@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/bytes_of.h"
 #include "engine/model/nearest.h"
 #include "engine/model/pressures.h"
 #include "engine/model/validate.h"
@@ -11,8 +10,6 @@
 
 namespace weft {
 namespace {
-
-std::size_t bytes_of_bits(const std::vector<bool>& bits) { return bits.capacity() / 8; }
 
 /// Those whose pin is fixed, and their particle is not; and those of tether_slack behind them.
 std::vector<Tether> acting_tethers(const SceneDescription& d) {
@@ -453,57 +450,13 @@ std::vector<Link> links_of(const ConstraintStore& store, std::size_t count) {
   return links;
 }
 
-std::size_t MembraneStore::bytes() const {
-  return bytes_of(slots) + bytes_of(rest) + bytes_of(element) + bytes_of(described) +
-         bytes_of(strength);
-}
-
 bool BendingStore::is_folded() const {
   return std::ranges::any_of(fold, [](double angle) { return angle != 0; });
-}
-
-std::size_t BendingStore::bytes() const {
-  return bytes_of(slots) + bytes_of(weights) + bytes_of(rest) + bytes_of(compliance) +
-         bytes_of(fold);
-}
-
-std::size_t SeamStore::bytes() const {
-  return bytes_of(a) + bytes_of(b) + bytes_of(time) + bytes_of(force) + bytes_of(strength);
-}
-
-std::size_t SliderStore::bytes() const {
-  return bytes_of(slot) + bytes_of(first) + bytes_of(last) + bytes_of(friction) + bytes_of(rail);
-}
-
-std::size_t AnchorStore::bytes() const {
-  return bytes_of(slot) + bytes_of(limits) + bytes_of(described) + bytes_of(pins) + bytes_of(at);
 }
 
 reference::AnchorPose pose_of(Vec3 point, Vec3 normal) {
   const kernels::Vector n{normal.x, normal.y, normal.z};
   return {{point.x, point.y, point.z}, kernels::direction(n, length(n))};
-}
-
-std::size_t ConstraintStore::bytes() const {
-  return bytes_of(a) + bytes_of(b) + bytes_of(rest_length) + bytes_of(effective_mass) +
-         bytes_of(compliance) + bytes_of(colour) + bytes_of(described) + bytes_of(slot) +
-         bytes_of(hub_distances) + bytes_of(hub_ropes) + bytes_of_bits(turned) + bytes_of(strength);
-}
-
-std::size_t InertStore::bytes() const {
-  return bytes_of(constraints) + bytes_of(membrane) + bytes_of(bending);
-}
-
-std::size_t Model::bytes() const {
-  return initial_position.bytes() + initial_velocity.bytes() + bytes_of(mass) +
-         bytes_of(inverse_mass) + bytes_of(radius) + bytes_of(hub) + bytes_of(hubs) +
-         bytes_of(pins) + bytes_of(holds) + bytes_of(spheres) + bytes_of(is_sphere) +
-         bytes_of(joined_) + bytes_of(tethers) + ordering.bytes() + constraints.bytes() +
-         membrane.bytes() + bending.bytes() + inert.bytes() + anchors.bytes() + seams.bytes() +
-         sliders.bytes() + bytes_of(split_from) + bytes_of(surface) + bytes_of(air.triangles) +
-         air.at.bytes() + reference_.bytes() + simd_.bytes() + chunk_neighbours_.bytes() +
-         pulls_.bytes() + direct_.bytes() + yarns_.bytes() + small_steps_.bytes() +
-         bending_fronts_.bytes() + touched_surface_.bytes();
 }
 
 Result<std::shared_ptr<const Model>> build_model(const SceneDescription& description) {

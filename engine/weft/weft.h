@@ -12,6 +12,7 @@
 ///   scene.h     describe a scene, build a model
 ///   settings.h  create a cloth: solver and tolerances
 ///   cloth.h     step it, move it, read it
+///   report.h    what a step reports
 ///   body.h      bodies that the cloth touches
 ///   batch.h     many cloths at once
 ///   jobs.h      threads of a job system
@@ -51,6 +52,7 @@
 #include <weft/body.h>
 #include <weft/cloth.h>
 #include <weft/jobs.h>
+#include <weft/report.h>
 #include <weft/result.h>
 #include <weft/scene.h>
 #include <weft/settings.h>
