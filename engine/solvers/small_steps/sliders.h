@@ -9,12 +9,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <span>
 #include <vector>
 
 #include "engine/bytes_of.h"
 #include "engine/model/model.h"
+#include "engine/tuning.h"
 #include "kernels/reference/rails.h"
 
 namespace weft {
@@ -63,12 +63,11 @@ class SliderThreads {
   /// Sliders of one rail move it under each other, so they take turns until all are on it.
   template <class Points>
   void hold(const Points& points, bool is_first) {
-    constexpr int kMostTurns = 16;
     if (is_first) std::ranges::fill(impulses_, Impulse{});
-    for (int turn = 0; turn < kMostTurns; ++turn) {
+    for (int turn = 0; turn < tuning::kSliderTurns; ++turn) {
       double most = 0;
       for (std::size_t i = 0; i < impulses_.size(); ++i) most = std::max(most, hold_one(points, i));
-      if (most <= kShare * tolerance_) return;
+      if (most <= tuning::kSliderShare * tolerance_) return;
     }
   }
 
@@ -76,8 +75,6 @@ class SliderThreads {
   std::size_t bytes() const { return bytes_of(impulses_) + bytes_of(places_); }
 
  private:
-  /// Turns leave so much of the tolerance.
-  static constexpr double kShare = 0.25;
   /// The impulses of a substep, kg m: towards the rail, and along it.
   struct Impulse {
     kernels::Vector normal{};
@@ -152,11 +149,8 @@ class SliderThreads {
     if (rail[0] == rail[1] || rail[2] == rail[3]) return 0;
     const kernels::Vector before = points.difference(rail[1], rail[0]);
     const kernels::Vector after = points.difference(rail[3], rail[2]);
-    const double angle = std::atan2(length(cross(before, after)), dot(before, after));
-    return std::min(angle, kMostTurn);
+    return std::atan2(length(cross(before, after)), dot(before, after));
   }
-  /// rad. A cord that turns back on itself has no direction over what it turns at.
-  static constexpr double kMostTurn = 0.9 * std::numbers::pi;
 
   const Model& model_;
   const double tolerance_;
