@@ -216,7 +216,7 @@ void pin_edge(const CutPattern& cut, PanelEdge edge, Layout& layout) {
 
 Result<Layout> skirt_layout(const SkirtShape& shape, const Options& options) {
   auto made = cut_for(pattern_of(shape), options);
-  if (!made) return Error{"skirt: " + made.error()};
+  if (!made) return Error{made.error()};
   const CutPattern& cut = made.value();
   std::vector<Vec3> start;
   for (std::size_t v = 0; v < cut.flat.size(); ++v)
@@ -243,9 +243,9 @@ Result<Layout> worn_tunic(const Options& options) {
   return tunic_layout(made.value(), laid_around(made.value()));
 }
 
-Result<Layout> tunic(const Options& options) {
+Result<Layout> hung_tunic(const Options& options) {
   auto made = cut_for(tunic_pattern(), options);
-  if (!made) return Error{"tunic: " + made.error()};
+  if (!made) return Error{made.error()};
   const CutPattern& cut = made.value();
   Layout layout = tunic_layout(cut, laid_flat(cut));
   pin_edge(cut, {kFront, kRightPeg}, layout);
@@ -254,7 +254,7 @@ Result<Layout> tunic(const Options& options) {
   return layout;
 }
 
-Result<Layout> skirt(const Options& options) { return skirt_layout(kSkirt, options); }
+Result<Layout> fitted_skirt(const Options& options) { return skirt_layout(kSkirt, options); }
 
 Result<Layout> outer_skirt(const Options& options) { return skirt_layout(kOuterSkirt, options); }
 

@@ -1,4 +1,4 @@
-/// The built-in scenes that are clothes (scenes.h).
+/// Clothes of built-in scenes.
 #pragma once
 
 #include <weft/result.h>
@@ -13,8 +13,10 @@ Pattern tunic_pattern();
 Pattern skirt_pattern();
 
 /// The error says what is too coarse.
-Result<Layout> tunic(const Options& options);
-Result<Layout> skirt(const Options& options);
+/// Flat, hanging from its shoulders.
+Result<Layout> hung_tunic(const Options& options);
+/// On its cone; its waist is fixed.
+Result<Layout> fitted_skirt(const Options& options);
 /// One that is worn over the tunic; its waist is fixed.
 Result<Layout> outer_skirt(const Options& options);
 /// The tunic as on a wearer: front and back apart, and without pins.

@@ -16,9 +16,6 @@
 namespace weft::tools {
 namespace {
 
-/// The smallest odd size from the usual 20 up: `corners` has a middle row.
-constexpr int kDefaultCornersSize = 21;
-
 std::string built_in_names() {
   std::string names;
   for (const scenes::BuiltIn& scene : scenes::list()) {
@@ -27,14 +24,9 @@ std::string built_in_names() {
   return names;
 }
 
-bool is_built_in(std::string_view name) {
-  return std::ranges::find(scenes::list(), name, &scenes::BuiltIn::name) != scenes::list().end();
-}
-
 /// What changes a material changes that which the scene has by itself.
-MaterialOptions with_its_own(MaterialOptions options, std::string_view scene) {
-  const auto built_in = std::ranges::find(scenes::list(), scene, &scenes::BuiltIn::name);
-  if (built_in->is_fabric && !options.material) options.material = scenes::kFabric;
+MaterialOptions with_its_own(MaterialOptions options, const scenes::BuiltIn& scene) {
+  if (scene.is_fabric && !options.material) options.material = scenes::kFabric;
   return options;
 }
 
@@ -114,17 +106,15 @@ Result<void> blow(const std::optional<Vec3>& wind, SceneDescription& scene) {
   return {};
 }
 
-Result<SceneSource> load_built_in(const SceneOptions& options) {
+Result<SceneSource> load_built_in(const scenes::BuiltIn& scene, const SceneOptions& options) {
   const bool is_cloth = options.scene != kChain;
   const std::string_view kinds[] = {kBuiltIn, options.scene, is_cloth ? kCloth : options.scene,
                                     is_cloth ? kBuiltInCloth : options.scene};
   if (auto checked = check_options(options, kinds); !checked) return Error{checked.error()};
-  const auto cloth =
-      cloth_of(options.ropes, with_its_own(options.material, options.scene), Ropes::all);
+  const auto cloth = cloth_of(options.ropes, with_its_own(options.material, scene), Ropes::all);
   if (!cloth) return Error{cloth.error()};
   scenes::Options values;
-  if (options.scene == "corners") values.size = kDefaultCornersSize;
-  values.size = options.size.value_or(values.size);
+  values.size = options.size.value_or(scene.usual_size);
   values.slack = options.slack.value_or(values.slack);
   values.sphere_mass = options.sphere_mass.value_or(values.sphere_mass);
   values.end_mass = options.end_mass.value_or(values.end_mass);
@@ -264,7 +254,7 @@ void look_over(SceneSource& source) {
 }
 
 Result<SceneSource> load_as_it_is(const SceneOptions& options) {
-  if (is_built_in(options.scene)) return load_built_in(options);
+  if (const auto* built_in = scenes::find(options.scene)) return load_built_in(*built_in, options);
   const std::string ending = file_ending(options.scene);
   if (ending == ".json") return load_scene_file(options);
   if (ending == ".obj") return load_obj(options);
@@ -282,7 +272,7 @@ void add_scene_options(Verb verb, SceneOptions& options) {
                 ".obj mesh");
   verb.group("Built-in scenes");
   verb.option("--size", options.size,
-              "particles along a side of a built-in scene (default 20; corners: 21)");
+              "particles along a side of a built-in scene (default 20, or what a scene takes)");
   verb.option("--slack", options.slack, "sphere_drop: slack of the sheet (default 0.05)");
   verb.option("--sphere-mass", options.sphere_mass, "sphere_drop: kg (default 1)");
   verb.option("--end-mass", options.end_mass, "chain: kg of the last particle (default 1)");
@@ -339,7 +329,7 @@ Result<SceneSource> load_scene(const SceneOptions& options) {
 Result<std::shared_ptr<const Model>> model_of(SceneSource& source) {
   auto model = build_model(source.description);
   if (model) look_over(source);
-  if (model || is_built_in(source.name)) return model;
+  if (model || scenes::find(source.name) != nullptr) return model;
   return Error{fmt::format("{}: {}", source.name, model.error())};
 }
 

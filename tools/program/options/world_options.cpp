@@ -135,8 +135,7 @@ void add_world_options(Verb verb, WorldOptions& options) {
               "m, at which all bodies keep the cloth (default 0.001, or what they have)");
   verb.option("--self-contact", options.self_contact,
               "on or off: whether layers of the cloth keep the thickness of its material from each "
-              "other, 0.001 without (default: what a scene has: off, but for tunic, stack, fold, "
-              "curtain, twist, ribbon, funnel and outfit)");
+              "other, 0.001 without (default: what the scene has)");
   verb.option(
       "--ram", options.ram,
       "pressure coefficient of air that a piece of the cloth catches, as a canopy or a sail: "

@@ -1,11 +1,10 @@
-#include "tools/scenes/mannequin.h"
+#include "tools/scenes/wearer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
-#include "tools/scenes/body_meshes.h"
 #include "tools/scenes/garments.h"
 
 namespace weft::scenes {
@@ -76,50 +75,14 @@ std::vector<SceneBody> wearer() {
   return parts;
 }
 
-/// All of the second, at rest beside the first.
-void add_garment(const Layout& garment, Layout& layout) {
-  constexpr double kApart = 6;  // m
-  const auto first = static_cast<std::uint32_t>(layout.start.size());
-  layout.start.insert(layout.start.end(), garment.start.begin(), garment.start.end());
-  for (const Vec3 rest : garment.rest) layout.rest.push_back({rest.x + kApart, rest.y, rest.z});
-  for (Face face : garment.faces) {
-    for (std::uint32_t& corner : face) corner += first;
-    layout.faces.push_back(std::move(face));
-  }
-  for (const auto& [a, b] : garment.seams) layout.seams.push_back({first + a, first + b});
-  for (const std::uint32_t pin : garment.pins) layout.pins.push_back(first + pin);
-}
-
 }  // namespace
 
-Result<Layout> mannequin(const Options& options) {
+Result<Layout> dressed_wearer(const Options& options) {
   auto layout = worn_tunic(options);
-  if (!layout) return Error{"mannequin: " + layout.error()};
-  layout.value().bodies = wearer();
+  if (layout) layout.value().bodies = wearer();
   return layout;
 }
 
-Result<Layout> mannequin_mesh(const Options& options) {
-  constexpr int kAround = 24;
-  auto layout = mannequin(options);
-  if (!layout) return layout;
-  for (SceneBody& part : layout.value().bodies)
-    part.shape = capsule_mesh(std::get<Capsule>(part.shape), kAround);
-  return layout;
-}
-
-/// The waist of the skirt goes where the trunk goes.
-Result<Layout> outfit(const Options& options) {
-  auto layout = mannequin(options);
-  if (!layout) return layout;
-  const auto over_it = outer_skirt(options);
-  if (!over_it) return Error{"outfit: " + over_it.error()};
-  add_garment(over_it.value(), layout.value());
-  PinMove waist = walk({}, 0);
-  waist.particles = layout.value().pins;
-  layout.value().moves.push_back(std::move(waist));
-  layout.value().touches_itself = true;
-  return layout;
-}
+tools::PinMove walk_of_trunk() { return walk({}, 0); }
 
 }  // namespace weft::scenes
