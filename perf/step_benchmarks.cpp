@@ -56,9 +56,9 @@ Settings settings_of(const Case& c) {
   settings.backend = c.backend;
   settings.isa = static_cast<Isa>(static_cast<int>(c.isa) + 1);  // Isa::automatic comes first
   settings.threads = 1;
-  settings.directions = c.method.directions;
-  settings.anticipate = c.method.anticipate;
-  settings.skip = c.method.skip;
+  settings.measuring.directions = c.method.directions;
+  settings.measuring.anticipate = c.method.anticipate;
+  settings.measuring.skip = c.method.skip;
   settings.iterations = c.iterations;
   return settings;
 }

@@ -13,7 +13,7 @@ Result<void> read_choices(const weft_settings& s, Settings& out) {
   if (auto r = read_choice("scheme", s.scheme, Scheme::automatic, out.scheme); !r) return r;
   if (auto r = read_choice("backend", s.backend, Backend::simd, out.backend); !r) return r;
   if (auto r = read_choice("isa", s.isa, Isa::neon, out.isa); !r) return r;
-  return read_choice("directions", s.directions, Directions::frozen, out.directions);
+  return read_choice("directions", s.directions, Directions::frozen, out.measuring.directions);
 }
 
 /// "unknown" for numbers that are no choice.
@@ -29,22 +29,22 @@ weft_settings settings_of(const Settings& s) {
           .tolerance = s.tolerance,
           .substeps = s.substeps,
           .iterations = s.iterations,
-          .renew_after = s.renew_after,
+          .renew_after = s.measuring.renew_after,
           .max_iterations = s.max_iterations,
           .contact_tolerance = s.contact_tolerance,
           .velocity_tolerance = s.velocity_tolerance,
           .motion_tolerance = s.motion_tolerance,
-          .impulse_limit = s.impulse_limit,
+          .impulse_limit = s.measuring.impulse_limit,
           .solver = static_cast<int>(s.solver),
           .scheme = static_cast<int>(s.scheme),
           .backend = static_cast<int>(s.backend),
           .isa = static_cast<int>(s.isa),
           .threads = s.threads,
-          .directions = static_cast<int>(s.directions),
-          .anticipate = s.anticipate,
-          .anticipate_products = s.anticipate_products,
+          .directions = static_cast<int>(s.measuring.directions),
+          .anticipate = s.measuring.anticipate,
+          .anticipate_products = s.measuring.anticipate_products,
           .sleep = s.sleep,
-          .skip = s.skip,
+          .skip = s.measuring.skip,
           .velocity_correction = s.velocity_correction};
 }
 
@@ -57,17 +57,17 @@ Result<Settings> read_settings(const weft_settings* settings) {
   out.tolerance = s.tolerance;
   out.substeps = s.substeps;
   out.iterations = s.iterations;
-  out.renew_after = s.renew_after;
+  out.measuring.renew_after = s.renew_after;
   out.max_iterations = s.max_iterations;
   out.contact_tolerance = s.contact_tolerance;
   out.velocity_tolerance = s.velocity_tolerance;
   out.motion_tolerance = s.motion_tolerance;
-  out.impulse_limit = s.impulse_limit;
+  out.measuring.impulse_limit = s.impulse_limit;
   out.threads = s.threads;
-  out.anticipate = s.anticipate != 0;
-  out.anticipate_products = s.anticipate_products != 0;
+  out.measuring.anticipate = s.anticipate != 0;
+  out.measuring.anticipate_products = s.anticipate_products != 0;
   out.sleep = s.sleep != 0;
-  out.skip = s.skip != 0;
+  out.measuring.skip = s.skip != 0;
   out.velocity_correction = s.velocity_correction != 0;
   if (auto r = read_choices(s, out); !r) return Error{r.error()};
   return out;

@@ -3,6 +3,14 @@
 
 namespace weft {
 
+Settings paper_settings() {
+  Settings settings;
+  settings.solver = Solver::gauss_seidel;
+  settings.scheme = Scheme::paper;
+  settings.substeps = 1;
+  return settings;
+}
+
 std::string_view name(Solver solver) {
   switch (solver) {
     case Solver::gauss_seidel:

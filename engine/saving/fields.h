@@ -102,9 +102,10 @@ void visit_fields(Is<BodyLoad> auto& load, auto& archive) {
 // settings.h
 
 void visit_fields(Is<Settings> auto& settings, auto& archive) {
-  auto& [tolerance, substeps, iterations, renew_after, max_iterations, contact_tolerance,
-         velocity_tolerance, motion_tolerance, impulse_limit, solver, scheme, backend, isa, threads,
-         directions, anticipate, anticipate_products, sleep, skip, velocity_correction] = settings;
+  auto& [tolerance, substeps, iterations, max_iterations, contact_tolerance, velocity_tolerance,
+         motion_tolerance, solver, scheme, backend, isa, threads, sleep, velocity_correction,
+         measuring] = settings;
+  auto& [directions, renew_after, anticipate, anticipate_products, skip, impulse_limit] = measuring;
   archive(tolerance, substeps, iterations, renew_after, max_iterations, contact_tolerance,
           velocity_tolerance, motion_tolerance, impulse_limit, solver, scheme, backend, isa,
           threads, directions, anticipate, anticipate_products, sleep, skip, velocity_correction);

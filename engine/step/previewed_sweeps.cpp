@@ -13,7 +13,7 @@ kernels::LoopResult PreviewedSweeps::solve_positions(const PositionTask& task, T
   motion.velocity = s_.next_velocity.view();
   const kernels::LoopLimits limits{.fixed_iterations = s_.settings.iterations,
                                    .max_iterations = task.max_iterations,
-                                   .renew_after = s_.settings.renew_after};
+                                   .renew_after = s_.settings.measuring.renew_after};
   return reference_.solve_previewed_positions(motion, task.h, task.contacts, task.laws,
                                               task.first_round, limits);
 }

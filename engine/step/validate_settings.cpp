@@ -42,14 +42,14 @@ Result<void> validate_scheme(const Settings& s) {
 
 /// The reference keeps products whenever it anticipates, and other solvers have none.
 Result<void> validate_products(const Settings& s) {
-  if (!s.anticipate_products) return {};
+  if (!s.measuring.anticipate_products) return {};
   if (s.backend != Backend::simd) {
     return refuse("anticipate_products", "is for the simd backend", std::string(name(s.backend)));
   }
   if (s.solver != Solver::gauss_seidel) {
     return refuse("anticipate_products", "is for solver gauss_seidel", std::string(name(s.solver)));
   }
-  if (!s.anticipate) return refuse("anticipate_products", "needs anticipate", "off");
+  if (!s.measuring.anticipate) return refuse("anticipate_products", "needs anticipate", "off");
   return {};
 }
 
@@ -97,22 +97,25 @@ Result<void> validate(const Settings& s) {
   if (auto r = validate_positive("tolerance", s.tolerance); !r) return r;
   if (auto r = validate_count("substeps", s.substeps, kAutomaticSubsteps); !r) return r;
   if (auto r = validate_count("iterations", s.iterations, 0); !r) return r;
-  if (auto r = validate_count("renew_after", s.renew_after, 0); !r) return r;
+  if (auto r = validate_count("renew_after", s.measuring.renew_after, 0); !r) return r;
   if (auto r = validate_count("max_iterations", s.max_iterations, 0); !r) return r;
   if (auto r = validate_positive("contact_tolerance", s.contact_tolerance); !r) return r;
   if (auto r = validate_positive("velocity_tolerance", s.velocity_tolerance); !r) return r;
-  if (!std::isfinite(s.impulse_limit) || s.impulse_limit < 0) {
-    return refuse("impulse_limit", "must be finite and at least 0", number(s.impulse_limit));
+  if (!std::isfinite(s.measuring.impulse_limit) || s.measuring.impulse_limit < 0) {
+    return refuse("impulse_limit", "must be finite and at least 0",
+                  number(s.measuring.impulse_limit));
   }
   if (auto r = validate_choice("solver", s.solver, Solver::automatic); !r) return r;
   if (auto r = validate_choice("scheme", s.scheme, Scheme::automatic); !r) return r;
   if (auto r = validate_choice("backend", s.backend, Backend::simd); !r) return r;
-  if (s.impulse_limit > 0 && s.backend != Backend::reference) {
+  if (s.measuring.impulse_limit > 0 && s.backend != Backend::reference) {
     return refuse("impulse_limit", "only the reference backend limits impulses",
-                  number(s.impulse_limit));
+                  number(s.measuring.impulse_limit));
   }
-  if (s.impulse_limit > 0 && (s.solver != Solver::gauss_seidel && s.solver != Solver::automatic)) {
-    return refuse("impulse_limit", "only Gauss-Seidel limits impulses", number(s.impulse_limit));
+  if (s.measuring.impulse_limit > 0 &&
+      (s.solver != Solver::gauss_seidel && s.solver != Solver::automatic)) {
+    return refuse("impulse_limit", "only Gauss-Seidel limits impulses",
+                  number(s.measuring.impulse_limit));
   }
   if (auto r = validate_products(s); !r) return r;
   if (s.solver == Solver::yarn && s.backend != Backend::simd) {
@@ -124,7 +127,7 @@ Result<void> validate(const Settings& s) {
     return refuse("threads", "must be from 0 to " + std::to_string(kMaxThreads),
                   std::to_string(s.threads));
   }
-  return validate_choice("directions", s.directions, Directions::frozen);
+  return validate_choice("directions", s.measuring.directions, Directions::frozen);
 }
 
 Result<void> validate_for_solver(const Settings& s, const Model& model) {
@@ -135,7 +138,7 @@ Result<void> validate_for_solver(const Settings& s, const Model& model) {
   if (springs && s.velocity_correction) {
     return refuse("velocity_correction", "takes no constraints with a compliance", "on");
   }
-  if (springs && s.anticipate_products) {
+  if (springs && s.measuring.anticipate_products) {
     return refuse("anticipate_products", "takes no constraints with a compliance", "on");
   }
   const bool is_bounded_alone = s.solver == Solver::small_steps && s.substeps != kAutomaticSubsteps;

@@ -21,12 +21,12 @@
 ///   backend              `reference`, to check a result in double precision; slow
 ///   isa                  to compare instruction sets, or to use fewer than the machine has
 ///   iterations           for the same number of iterations in each step, whatever the error
-///   directions, renew_after, skip, anticipate, anticipate_products, impulse_limit
-///                        to measure the method of the paper; not needed otherwise
+///   measuring            to measure the method of the paper; not needed otherwise (measuring.h)
 ///
 /// Cloth::create checks the settings. An error names the field and the value.
 #pragma once
 
+#include <weft/measuring.h>
 #include <weft/result.h>
 
 #include <cstdint>
@@ -97,10 +97,6 @@ enum class Solver : std::uint8_t { gauss_seidel, direct, yarn, small_steps, auto
 ///   StepReport::scheme_fallbacks counts these. With Settings::iterations nothing is redone. rattle
 ///   refuses springs.
 enum class Scheme : std::uint8_t { paper, rattle, implicit, bdf2, automatic };
-/// each: directions are renewed before every iteration (sections 3.2, 4.1).
-/// frozen: directions are renewed once all errors along them are within tolerance (section 4.4), or
-///   after renew_after iterations.
-enum class Directions : std::uint8_t { each, frozen };
 /// reference: scalar code in double precision, against which everything else is tested.
 /// simd: single precision in lanes inside the loop, refined from positions in double. It reaches
 ///   the same tolerance.
@@ -113,9 +109,8 @@ enum class Isa : std::uint8_t { automatic, sse2, avx2, avx512, neon };
 inline constexpr int kMaxThreads = 64;
 inline constexpr int kAutomaticSubsteps = 0;
 
-/// How a cloth is solved. The defaults are the fastest known way to 1 %; paper_settings() has the
-/// settings of the paper. The order of the fields is that of the C struct; each comment says
-/// whether a field is for everyday use.
+/// How a cloth is solved. The defaults are the fastest known way to 1 %. Each comment says whether
+/// a field is for everyday use.
 struct Settings {
   /// Everyday. The largest strain, | |a-b| - rest | / rest, that a step may leave; for a spring,
   /// the largest error of its law; and the fraction of the bending forces that may stay unbalanced
@@ -142,12 +137,6 @@ struct Settings {
   /// error; nothing is skipped. gauss_seidel then renews frozen directions once per substep, other
   /// solvers in every iteration.
   int iterations = 0;
-  /// Advanced. The largest number of iterations along the same frozen directions. 0: until all
-  /// errors along them are within tolerance, as in the paper (section 4.4); on the simd backend at
-  /// most 1024, since between renewals errors in floats fall by seven digits at most. An exact
-  /// solution along directions that will change is wasted work: 32 saves a fifth of the iterations
-  /// and more.
-  int renew_after = 32;
   /// Everyday. > 0, an upper bound on the work of a step: substeps, attempts and schemes together.
   /// Games should set it to a few times the usual work: the next frame does what one leaves undone.
   /// (For the same time in each frame: `iterations` and `substeps`, solver yarn.)
@@ -170,9 +159,6 @@ struct Settings {
   /// automatic then chooses small_steps at any tolerance. It is refused with `substeps`,
   /// `iterations` or velocity_correction.
   double motion_tolerance = 0;
-  /// Advanced. N s, the largest impulse of one correction; 0: no limit. gauss_seidel on the
-  /// reference backend only.
-  double impulse_limit = 0;
   Solver solver = Solver::automatic;  ///< Advanced.
   Scheme scheme = Scheme::automatic;  ///< Advanced.
   Backend backend = Backend::simd;    ///< Advanced.
@@ -181,19 +167,6 @@ struct Settings {
   /// 0: all that it offers, up to kMaxThreads. Yarns use at most 16 threads, small cloths one. The
   /// number does not affect the result.
   int threads = 0;
-  Directions directions = Directions::frozen;  ///< Advanced.
-  /// Advanced. Section 4.2: errors are updated instead of recomputed. The simd backend forms them
-  /// from displacements either way, which is faster in lanes (perf/tried.md). There this setting
-  /// selects how `skip` tracks satisfied constraints: true, by flags of chunks; false, by the
-  /// 64-bit masks of the paper.
-  bool anticipate = true;
-  /// Advanced. With gauss_seidel on the simd backend and with `anticipate`: errors of distance
-  /// constraints, in both loops, are kept, and updated through the stored products of neighbouring
-  /// directions, as in section 4.2. Ropes, constraints at hubs and contacts still form theirs from
-  /// displacements. An iteration takes 1.3 to 2 times as long as by displacements, on irregular
-  /// meshes 3 times (perf/tried.md). The reference backend anticipates by products anyway, and
-  /// refuses this setting. Models with springs refuse it, too.
-  bool anticipate_products = false;
   /// Everyday. A cloth that rests falls asleep: its velocities are set to zero, and its steps do
   /// nothing but say so (StepReport::asleep). It rests if for half a second no particle has moved
   /// farther than a thousandth of the mean length of its constraints. Positions, velocities,
@@ -201,25 +174,15 @@ struct Settings {
   /// has wake it; the same values again do not. A cloth that tips over more slowly than this falls
   /// asleep too. In steps of more than 1/8 s nothing falls asleep.
   bool sleep = false;
-  bool skip = true;  ///< Advanced. Section 4.3: satisfied constraints are passed over.
   /// Advanced. Sections 3.2, 3.3: a second loop, on velocities; rattle always has it. Without it
   /// gauss_seidel gains energy in steps of a millisecond and less: an error that is left within a
   /// loose tolerance comes back as speed, error / dt (tests/README.md). It refuses springs.
   bool velocity_correction = false;
+  Measuring measuring{};  ///< For measurements alone (measuring.h).
 };
-
-/// The method of the paper, with all its optimisations: Gauss-Seidel, one substep.
-inline Settings paper_settings() {
-  Settings settings;
-  settings.solver = Solver::gauss_seidel;
-  settings.scheme = Scheme::paper;
-  settings.substeps = 1;
-  return settings;
-}
 
 WEFT_API std::string_view name(Solver);
 WEFT_API std::string_view name(Scheme);
-WEFT_API std::string_view name(Directions);
 WEFT_API std::string_view name(Backend);
 WEFT_API std::string_view name(Isa);
 

@@ -16,6 +16,7 @@
 ///   body.h      bodies that the cloth touches
 ///   batch.h     many cloths at once
 ///   jobs.h      threads of a job system
+///   measuring.h settings that only measure methods: no other program needs it
 ///
 /// It does not include mesh.h, which makes a SceneDescription of a mesh and a material, surface.h,
 /// which gives a renderer its vertices, or report_fields.h and scene_fields.h, which list fields.

@@ -309,9 +309,9 @@ TEST_CASE("random cases: what is passed over changes no bit") {
     if (c.settings.backend == Backend::reference && !is_resolved(c)) return;
     INFO(text(c));
     Settings other = c.settings;
-    other.skip = !other.skip;
-    if (c.settings.backend == Backend::simd && !c.settings.anticipate_products) {
-      other.anticipate = !other.anticipate;
+    other.measuring.skip = !other.measuring.skip;
+    if (c.settings.backend == Backend::simd && !c.settings.measuring.anticipate_products) {
+      other.measuring.anticipate = !other.measuring.anticipate;
     }
     CHECK(hash_after(c, other) == hash_after(c, c.settings));
   });
@@ -323,8 +323,9 @@ TEST_CASE("random cases of springs: what is passed over, and threads, change no 
     INFO(text(c));
     const std::uint64_t hash = hash_after(c, c.settings);
     Settings other = c.settings;
-    other.skip = !other.skip;
-    if (c.settings.backend == Backend::simd) other.anticipate = !other.anticipate;
+    other.measuring.skip = !other.measuring.skip;
+    if (c.settings.backend == Backend::simd)
+      other.measuring.anticipate = !other.measuring.anticipate;
     CHECK(hash_after(c, other) == hash);
     other = c.settings;
     other.threads = 1;

@@ -205,9 +205,9 @@ TEST_CASE("random solutions: exact solvers end where Newton's method ends") {
     ++known;
     INFO(text(c));
     c.settings.backend = Backend::reference;
-    c.settings.anticipate_products = false;
-    c.settings.renew_after = 0;
-    c.settings.directions = Directions::frozen;
+    c.settings.measuring.anticipate_products = false;
+    c.settings.measuring.renew_after = 0;
+    c.settings.measuring.directions = Directions::frozen;
     for (const Solver solver : {Solver::gauss_seidel, Solver::direct}) {
       CAPTURE(name(solver));
       c.settings.solver = solver;

@@ -130,9 +130,9 @@ std::string text(const Method& method) {
 }
 
 Settings with(Settings settings, const Method& method) {
-  settings.directions = method.directions;
-  settings.anticipate = method.anticipate;
-  settings.skip = method.skip;
+  settings.measuring.directions = method.directions;
+  settings.measuring.anticipate = method.anticipate;
+  settings.measuring.skip = method.skip;
   settings.backend = method.backend;
   return settings;
 }

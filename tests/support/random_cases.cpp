@@ -270,23 +270,24 @@ Settings draw_settings(Random& random) {
   s.tolerance = decades(-5, -1, random);
   s.substeps = random.below(4) == 0 ? 2 + static_cast<int>(random.below(3)) : 1;
   s.iterations = random.below(12) == 0 ? 1 + static_cast<int>(random.below(20)) : 0;
-  s.renew_after = one_of(std::array{0, 1, 3, 32}, random);
+  s.measuring.renew_after = one_of(std::array{0, 1, 3, 32}, random);
   s.max_iterations = one_of(std::array{3, 300, 1000, 1000}, random);
   s.contact_tolerance = decades(-6, -3, random);
   s.velocity_tolerance = decades(-4, -1, random);
   s.solver = one_of(std::array{Solver::gauss_seidel, Solver::gauss_seidel, Solver::direct}, random);
   s.backend = one_of(std::array{Backend::reference, Backend::simd, Backend::simd}, random);
-  s.directions = one_of(std::array{Directions::each, Directions::frozen}, random);
-  s.anticipate = random.below(2) == 0;
-  s.skip = random.below(2) == 0;
+  s.measuring.directions = one_of(std::array{Directions::each, Directions::frozen}, random);
+  s.measuring.anticipate = random.below(2) == 0;
+  s.measuring.skip = random.below(2) == 0;
   s.velocity_correction = random.below(3) == 0;
   return s;
 }
 
 /// Where there are any.
 void draw_products(Settings& s, Random& random) {
-  const bool may = s.backend == Backend::simd && s.solver == Solver::gauss_seidel && s.anticipate;
-  s.anticipate_products = may && random.below(2) == 0;
+  const bool may =
+      s.backend == Backend::simd && s.solver == Solver::gauss_seidel && s.measuring.anticipate;
+  s.measuring.anticipate_products = may && random.below(2) == 0;
 }
 
 std::uint32_t environment(const char* variable, std::uint32_t otherwise) {
@@ -345,7 +346,7 @@ RandomCase softened_case(std::uint32_t seed) {
     if (random.below(3) > 0) link.compliance = std::pow(10, random.between(-12, 1));
   }
   if (random.below(3) == 0) c.scene.damping.stretch = std::pow(10, random.between(-4, 0));
-  c.settings.velocity_correction = c.settings.anticipate_products = false;
+  c.settings.velocity_correction = c.settings.measuring.anticipate_products = false;
   if (c.settings.scheme == Scheme::rattle) c.settings.scheme = Scheme::paper;
   return c;
 }
@@ -360,7 +361,7 @@ RandomCase fabric_case(std::uint32_t seed) {
   c.settings.solver = random.below(4) == 0 ? Solver::automatic : Solver::small_steps;
   c.settings.scheme = one_of(std::array{Scheme::implicit, Scheme::bdf2}, random);
   if (c.settings.solver == Solver::automatic) c.settings.scheme = Scheme::automatic;
-  c.settings.velocity_correction = c.settings.anticipate_products = false;
+  c.settings.velocity_correction = c.settings.measuring.anticipate_products = false;
   if (random.below(2) == 0) c.settings.substeps = kAutomaticSubsteps;
   return c;
 }
@@ -435,12 +436,14 @@ std::string text(const RandomCase& c) {
       << " particles, " << d.constraints.size() << " constraints, " << d.membrane.size()
       << " triangles, " << d.fixed.size() << " fixed, " << d.spheres.size() << " spheres; dt "
       << c.dt << (c.frames_vary() ? " at most; " : "; ") << name(s.solver) << ", " << name(s.scheme)
-      << ", " << name(s.backend) << ", " << name(s.directions)
-      << (s.anticipate ? ", anticipate" : "") << (s.anticipate_products ? " through products" : "")
-      << (s.skip ? ", skip" : "") << (s.velocity_correction ? ", velocity correction" : "")
-      << ", tolerance " << s.tolerance << ", contacts " << s.contact_tolerance << ", velocities "
-      << s.velocity_tolerance << ", substeps " << s.substeps << ", iterations " << s.iterations
-      << " of at most " << s.max_iterations << ", renewed after " << s.renew_after;
+      << ", " << name(s.backend) << ", " << name(s.measuring.directions)
+      << (s.measuring.anticipate ? ", anticipate" : "")
+      << (s.measuring.anticipate_products ? " through products" : "")
+      << (s.measuring.skip ? ", skip" : "")
+      << (s.velocity_correction ? ", velocity correction" : "") << ", tolerance " << s.tolerance
+      << ", contacts " << s.contact_tolerance << ", velocities " << s.velocity_tolerance
+      << ", substeps " << s.substeps << ", iterations " << s.iterations << " of at most "
+      << s.max_iterations << ", renewed after " << s.measuring.renew_after;
   return out.str();
 }
 

@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -70,11 +71,12 @@ V taken(const Given<V>& given, const std::string& field) {
 }
 
 /// A field of a class that has no more than some of them.
-template <class T, class V>
-void add_field(py::class_<T>& type, const char* name, V T::*member, const char* text) {
+template <class T, class Part>
+void add_field(py::class_<T>& type, const char* name, Part part, const char* text) {
+  using V = std::remove_reference_t<std::invoke_result_t<Part, T&>>;
   type.def_property(
-      name, [member](T& t) -> V& { return t.*member; },
-      [member, name](T& t, const Given<V>& v) { t.*member = taken(v, name); }, text);
+      name, [part](T& t) -> V& { return std::invoke(part, t); },
+      [part, name](T& t, const Given<V>& v) { std::invoke(part, t) = taken(v, name); }, text);
 }
 
 /// How a field looks in the representation of an object: of an array its shape.
@@ -98,9 +100,10 @@ class Fields : public py::class_<T> {
     this->def(py::init(&made_of), "The defaults, but for the fields that are given by name.");
     this->def("__repr__", &description_of);
   }
-  template <class V>
-  Fields& field(const char* name, V T::*member, const char* text) {
-    add_field(*this, name, member, text);
+  /// part: a member, or what returns a reference to a part of one.
+  template <class Part>
+  Fields& field(const char* name, Part part, const char* text) {
+    add_field(*this, name, part, text);
     return note(name);
   }
   /// Whole arrays are read and assigned. in_messages: the field's name there.

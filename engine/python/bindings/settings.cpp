@@ -36,6 +36,12 @@ void add_setting_enumerations(py::module_& m) {
       .value("neon", Isa::neon);
 }
 
+/// A field of Settings::measuring, which Python has beside all others.
+template <auto kField>
+constexpr auto measured = [](Settings& settings) -> auto& {
+  return settings.measuring.*kField;
+};
+
 }  // namespace
 
 void add_settings(py::module_& m) {
@@ -48,22 +54,23 @@ void add_settings(py::module_& m) {
              "the distance from their laws")
       .field("substeps", &Settings::substeps, "0: automatic")
       .field("iterations", &Settings::iterations, "0: to the tolerance")
-      .field("renew_after", &Settings::renew_after, "iterations along the same directions")
+      .field("renew_after", measured<&Measuring::renew_after>,
+             "iterations along the same directions")
       .field("max_iterations", &Settings::max_iterations, "of a whole step")
       .field("contact_tolerance", &Settings::contact_tolerance, "m")
       .field("velocity_tolerance", &Settings::velocity_tolerance, "m/s")
       .field("motion_tolerance", &Settings::motion_tolerance, "m/s, the allowed error; 0: off")
-      .field("impulse_limit", &Settings::impulse_limit, "N s; 0: none")
+      .field("impulse_limit", measured<&Measuring::impulse_limit>, "N s; 0: none")
       .field("solver", &Settings::solver, "a Solver")
       .field("scheme", &Settings::scheme, "a Scheme")
       .field("backend", &Settings::backend, "a Backend")
       .field("isa", &Settings::isa, "an Isa")
       .field("threads", &Settings::threads, "most threads of an Arena; 0: all")
-      .field("directions", &Settings::directions, "Directions")
-      .field("anticipate", &Settings::anticipate, "section 4.2 of the paper")
-      .field("anticipate_products", &Settings::anticipate_products, "by stored products")
+      .field("directions", measured<&Measuring::directions>, "Directions")
+      .field("anticipate", measured<&Measuring::anticipate>, "section 4.2 of the paper")
+      .field("anticipate_products", measured<&Measuring::anticipate_products>, "by stored products")
       .field("sleep", &Settings::sleep, "a cloth that rests costs nothing")
-      .field("skip", &Settings::skip, "section 4.3 of the paper")
+      .field("skip", measured<&Measuring::skip>, "section 4.3 of the paper")
       .field("velocity_correction", &Settings::velocity_correction, "a second loop");
   m.def("paper_settings", &paper_settings, "The settings of the paper: Gauss-Seidel, one substep.");
 }

@@ -52,7 +52,7 @@ TEST_CASE("the defaults are those of C++") {
   const Settings s;
   CHECK(settings.tolerance == s.tolerance);
   CHECK(settings.max_iterations == s.max_iterations);
-  CHECK(settings.renew_after == s.renew_after);
+  CHECK(settings.renew_after == s.measuring.renew_after);
   CHECK(settings.solver == static_cast<int>(s.solver));
   CHECK(settings.skip == 1);
   CHECK(initial(weft_init_paper_settings).solver == WEFT_GAUSS_SEIDEL);

@@ -37,22 +37,22 @@ weft_settings settings_in_c(const Settings& s) {
   out.tolerance = s.tolerance;
   out.substeps = s.substeps;
   out.iterations = s.iterations;
-  out.renew_after = s.renew_after;
+  out.renew_after = s.measuring.renew_after;
   out.max_iterations = s.max_iterations;
   out.contact_tolerance = s.contact_tolerance;
   out.velocity_tolerance = s.velocity_tolerance;
   out.motion_tolerance = s.motion_tolerance;
-  out.impulse_limit = s.impulse_limit;
+  out.impulse_limit = s.measuring.impulse_limit;
   out.solver = static_cast<int>(s.solver);
   out.scheme = static_cast<int>(s.scheme);
   out.backend = static_cast<int>(s.backend);
   out.isa = static_cast<int>(s.isa);
   out.threads = s.threads;
-  out.directions = static_cast<int>(s.directions);
-  out.anticipate = s.anticipate;
-  out.anticipate_products = s.anticipate_products;
+  out.directions = static_cast<int>(s.measuring.directions);
+  out.anticipate = s.measuring.anticipate;
+  out.anticipate_products = s.measuring.anticipate_products;
   out.sleep = s.sleep;
-  out.skip = s.skip;
+  out.skip = s.measuring.skip;
   out.velocity_correction = s.velocity_correction;
   return out;
 }

@@ -105,7 +105,7 @@ TEST_CASE("a cloth holds memory only for what it runs") {
   const Backend backend = each_backend();
   const SceneDescription scene = scene_of("hang", 20);
   Settings lean = on(backend);
-  lean.anticipate = lean.skip = false;
+  lean.measuring.anticipate = lean.measuring.skip = false;
   Settings full = on(backend);
   full.velocity_correction = true;
   const std::size_t little = cloth_of(scene, lean).bytes();

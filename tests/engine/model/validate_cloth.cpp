@@ -128,9 +128,9 @@ TEST_CASE("iterations, their bound and the impulse limit must be in range") {
   check_setting([](auto& s) { s.iterations = -3; }, {"iterations", "-3"});
   check_setting([](auto& s) { s.max_iterations = 0; }, {"max_iterations", "0"});
   check_setting([](auto& s) { s.max_iterations = -1; }, {"max_iterations", "-1"});
-  check_setting([](auto& s) { s.impulse_limit = -0.5; }, {"impulse_limit", "-0.5"});
-  check_setting([](auto& s) { s.impulse_limit = kNan; }, {"impulse_limit", "nan"});
-  check_setting([](auto& s) { s.impulse_limit = kInfinity; }, {"impulse_limit", "inf"});
+  check_setting([](auto& s) { s.measuring.impulse_limit = -0.5; }, {"impulse_limit", "-0.5"});
+  check_setting([](auto& s) { s.measuring.impulse_limit = kNan; }, {"impulse_limit", "nan"});
+  check_setting([](auto& s) { s.measuring.impulse_limit = kInfinity; }, {"impulse_limit", "inf"});
 }
 
 TEST_CASE("threads must be in range") {
@@ -146,23 +146,24 @@ TEST_CASE("threads must be in range") {
 }
 
 TEST_CASE("directions must not be renewed after a negative number of iterations") {
-  check_setting([](auto& s) { s.renew_after = -1; }, {"renew_after", "-1"});
+  check_setting([](auto& s) { s.measuring.renew_after = -1; }, {"renew_after", "-1"});
 }
 
 TEST_CASE("only the reference limits impulses") {
-  check_setting([](auto& s) { s.impulse_limit = 0.5; }, {"impulse_limit", "reference", "0.5"});
+  check_setting([](auto& s) { s.measuring.impulse_limit = 0.5; },
+                {"impulse_limit", "reference", "0.5"});
   Settings settings = on(Backend::reference);
-  settings.impulse_limit = 0.5;
+  settings.measuring.impulse_limit = 0.5;
   CHECK(Cloth::create(model_of(scene_of("hang", 4)), settings));
 }
 
 TEST_CASE("products are for Gauss-Seidel in lanes that anticipates") {
   const auto products = [](Solver solver, Backend backend, bool anticipate) {
     return [=](auto& s) {
-      s.anticipate_products = true;
+      s.measuring.anticipate_products = true;
       s.solver = solver;
       s.backend = backend;
-      s.anticipate = anticipate;
+      s.measuring.anticipate = anticipate;
     };
   };
   check_setting(products(Solver::gauss_seidel, Backend::reference, true),
@@ -184,7 +185,7 @@ TEST_CASE("choices that do not exist are refused") {
   check_setting([](auto& s) { s.scheme = static_cast<Scheme>(200); }, {"scheme", "200"});
   check_setting([](auto& s) { s.backend = static_cast<Backend>(200); }, {"backend", "200"});
   check_setting([](auto& s) { s.isa = static_cast<Isa>(200); }, {"isa", "200"});
-  check_setting([](auto& s) { s.directions = static_cast<Directions>(200); },
+  check_setting([](auto& s) { s.measuring.directions = static_cast<Directions>(200); },
                 {"directions", "200"});
 }
 

@@ -65,7 +65,7 @@ TEST_CASE("nor does a warm step through products") {
       CAPTURE(std::string(name));
       CAPTURE(velocity_correction);
       Settings settings = paper_settings();
-      settings.anticipate_products = true;
+      settings.measuring.anticipate_products = true;
       settings.velocity_correction = velocity_correction;
       CHECK(allocations_when_warm(name, settings) == 0);
     }

@@ -91,7 +91,7 @@ void check_directions(const Case& c, bool velocity_correction) {
     CAPTURE(velocity_correction);
     Settings settings = paper_settings();
     settings.tolerance = c.tolerance;
-    settings.directions = directions;
+    settings.measuring.directions = directions;
     settings.velocity_correction = velocity_correction;
     check_steps(c, settings);
   }

@@ -61,10 +61,10 @@ void for_every_case(F f) {
   for (const Case& c : cases()) {
     for (const bool other : {false, true}) {
       Settings settings = paper_settings();
-      settings.directions = other ? Directions::each : Directions::frozen;
+      settings.measuring.directions = other ? Directions::each : Directions::frozen;
       settings.velocity_correction = other;
       CAPTURE(c.scene.name);
-      CAPTURE(name(settings.directions));
+      CAPTURE(name(settings.measuring.directions));
       f(c, settings);
     }
   }
@@ -106,12 +106,12 @@ TEST_CASE("the number of threads changes no bit") {
 
 TEST_CASE("what is passed over changes no bit, on one thread as on two") {
   for_every_case([](const Case& c, Settings settings) {
-    settings.anticipate = settings.skip = false;
+    settings.measuring.anticipate = settings.measuring.skip = false;
     const std::uint64_t all = hash_after(c, settings);
     for (const bool anticipate : {false, true}) {
       CAPTURE(anticipate);
-      settings.anticipate = anticipate;
-      settings.skip = true;
+      settings.measuring.anticipate = anticipate;
+      settings.measuring.skip = true;
       CHECK(hash_after(c, settings) == all);
       CHECK(hash_after(c, settings, 2) == all);
     }
@@ -125,7 +125,7 @@ TEST_CASE("AVX2 and AVX-512 give the same bits, SSE2 about the same motion") {
   }
   for_every_case([](const Case& c, Settings settings) {
     for (const bool masks : {false, true}) {
-      settings.anticipate = !masks;
+      settings.measuring.anticipate = !masks;
       settings.isa = Isa::avx2;
       const std::uint64_t narrow = hash_after(c, settings);
       settings.isa = Isa::avx512;
@@ -139,14 +139,14 @@ TEST_CASE("AVX2 and AVX-512 give the same bits, SSE2 about the same motion") {
 TEST_CASE("through products: threads, what is passed over, AVX2 or AVX-512 change no bit") {
   const bool has_both = simd::supported(simd::Isa::avx512);
   for_every_case([&](const Case& c, Settings settings) {
-    settings.anticipate_products = true;
+    settings.measuring.anticipate_products = true;
     if (has_both) settings.isa = Isa::avx512;
     settings.threads = 1;
     const std::uint64_t alone = hash_after(c, settings);
     settings.threads = 0;
     CHECK(hash_after(c, settings, 2) == alone);
     CHECK(hash_after(c, settings, 3) == alone);
-    settings.skip = false;
+    settings.measuring.skip = false;
     CHECK(hash_after(c, settings) == alone);
     CHECK(hash_after(c, settings, 2) == alone);
     if (!has_both) return;
@@ -163,8 +163,8 @@ TEST_CASE("skipping leaves out much of what is at rest") {
   std::int64_t visits[3];
   for (int method = 0; method < 3; ++method) {
     Settings settings = paper_settings();
-    settings.skip = method > 0;
-    settings.anticipate = method != 1;
+    settings.measuring.skip = method > 0;
+    settings.measuring.anticipate = method != 1;
     Cloth cloth = cloth_of(scene, settings);
     REQUIRE(cloth.write_velocities(v));
     visits[method] = step(cloth, 0.01).visits;

@@ -76,11 +76,11 @@ TEST_CASE("skip and tolerances have no say in a fixed number of iterations") {
     settings.iterations = 10;
     settings.velocity_correction = true;
     for (const bool anticipate : {false, true}) {
-      settings.anticipate = anticipate;
-      settings.skip = false;
+      settings.measuring.anticipate = anticipate;
+      settings.measuring.skip = false;
       settings.tolerance = settings.contact_tolerance = settings.velocity_tolerance = 1e-6;
       Cloth plain = cloth_of(scene, settings);
-      settings.skip = true;
+      settings.measuring.skip = true;
       settings.tolerance = settings.contact_tolerance = settings.velocity_tolerance = 0.5;
       Cloth loose = cloth_of(scene, settings);
       run(plain, 0.01, 100);
@@ -96,7 +96,7 @@ TEST_CASE("more iterations leave a smaller error") {
   for (const int iterations : {1, 10, 100, 1000}) {
     Settings settings = on(backend);
     settings.iterations = iterations;
-    settings.directions = Directions::each;
+    settings.measuring.directions = Directions::each;
     Cloth cloth = cloth_of(scene_of("hang", 6), settings);
     double worst = 0;
     for (int k = 0; k < 50; ++k) worst = std::max(worst, step(cloth, 0.01).max_strain);
@@ -216,7 +216,7 @@ TEST_CASE("no correction exceeds the impulse limit") {
   for (const Method& method : kMethods) {
     CAPTURE(text(method));
     Settings settings = with(tight(1e-9), method);
-    settings.impulse_limit = 7;
+    settings.measuring.impulse_limit = 7;
     Cloth cloth = cloth_of(scene, settings);
     CHECK(step(cloth, 0.01).corrections == 5);
     CHECK(distance(cloth.position(1), {0.7, 0, 0}) < 1e-9);
@@ -235,7 +235,7 @@ TEST_CASE("the impulse limit holds in the velocity loop too") {
   Settings settings = tight(0.1);
   settings.velocity_tolerance = 1e-9;
   settings.velocity_correction = true;
-  settings.impulse_limit = 0.3;
+  settings.measuring.impulse_limit = 0.3;
   for (const Method& method : kMethods) {
     CAPTURE(text(method));
     Cloth cloth = cloth_of(scene, with(settings, method));
@@ -248,9 +248,9 @@ TEST_CASE("with an impulse limit, no method changes the result") {
   const SceneDescription scene = drifting_sheet(5, 21);
   for (const Directions directions : {Directions::each, Directions::frozen}) {
     Settings settings = on(Backend::reference, tight(1e-6));
-    settings.impulse_limit = 0.01;
-    settings.directions = directions;
-    settings.anticipate = settings.skip = false;
+    settings.measuring.impulse_limit = 0.01;
+    settings.measuring.directions = directions;
+    settings.measuring.anticipate = settings.measuring.skip = false;
     Cloth plain = cloth_of(scene, settings);
     run(plain, 0.01, 20);
     for (const Method& method : kMethods) {

@@ -101,10 +101,10 @@ TEST_CASE("what a hub moves is looked at again, whichever end of its constraints
       scene.radii[hub] = 0.01;
       scene.constraints.push_back({first ? hub : 399, first ? 399 : hub, 0.3});
       Settings settings = paper_settings();
-      settings.anticipate = anticipate;
-      settings.skip = false;
+      settings.measuring.anticipate = anticipate;
+      settings.measuring.skip = false;
       Cloth all = cloth_of(scene, settings);
-      settings.skip = true;
+      settings.measuring.skip = true;
       Cloth skipping = cloth_of(scene, settings);
       run(all, 0.01, 10);
       run(skipping, 0.01, 10);

@@ -57,7 +57,7 @@ void for_every_setting(Backend backend, F f) {
                                     (velocity_correction ? ", velocity correction" : "");
         CAPTURE(setting);
         Settings settings = on(backend);
-        settings.directions = directions;
+        settings.measuring.directions = directions;
         settings.velocity_correction = velocity_correction;
         f(scene, settings);
       }
@@ -69,10 +69,10 @@ TEST_CASE("skipping satisfied constraints changes no bit of 200 steps") {
   for_every_setting(each_backend(), [](const SceneDescription& scene, Settings settings) {
     for (const bool anticipate : {false, true}) {
       CAPTURE(anticipate);
-      settings.anticipate = anticipate;
-      settings.skip = false;
+      settings.measuring.anticipate = anticipate;
+      settings.measuring.skip = false;
       const Motion all = simulate(scene, settings);
-      settings.skip = true;
+      settings.measuring.skip = true;
       const Motion skipped = simulate(scene, settings);
       CHECK(skipped.hash == all.hash);
       CHECK(largest_distance(skipped.positions, all.positions) == 0);
@@ -82,16 +82,17 @@ TEST_CASE("skipping satisfied constraints changes no bit of 200 steps") {
       CHECK(skipped.visits <= all.visits);
       // So small a sheet is one chunk per colour on the simd backend: it may pass over nothing.
       const bool scalar = settings.backend == Backend::reference;
-      if (scalar && settings.directions == Directions::frozen) CHECK(skipped.visits < all.visits);
+      if (scalar && settings.measuring.directions == Directions::frozen)
+        CHECK(skipped.visits < all.visits);
     }
   });
 }
 
 TEST_CASE("anticipating errors changes none of 200 steps beyond rounding") {
   for_every_setting(Backend::reference, [](const SceneDescription& scene, Settings settings) {
-    settings.anticipate = false;
+    settings.measuring.anticipate = false;
     Cloth recomputed = cloth_of(scene, settings);
-    settings.anticipate = true;
+    settings.measuring.anticipate = true;
     Cloth anticipated = cloth_of(scene, settings);
     for (int k = 0; k < kSteps; ++k) {
       REQUIRE(anticipated.write_positions(positions(recomputed)));
@@ -115,10 +116,10 @@ Motion simulate_twin(SceneDescription scene, const Settings& settings) {
 
 TEST_CASE("anticipating errors does not change a run of 200 steps") {
   for_every_setting(Backend::reference, [](const SceneDescription& scene, Settings settings) {
-    settings.anticipate = false;
+    settings.measuring.anticipate = false;
     const Motion recomputed = simulate(scene, settings);
     const Motion twin = simulate_twin(scene, settings);
-    settings.anticipate = true;
+    settings.measuring.anticipate = true;
     const Motion anticipated = simulate(scene, settings);
     // A sheet that buckles under a sphere amplifies rounding a billion times in 2 s.
     const double chaos = largest_distance(twin.positions, recomputed.positions);
@@ -187,22 +188,22 @@ TEST_CASE("frozen directions live for as many iterations as the settings say") {
   const SceneDescription scene = scene_of("hang", 12);
   Settings settings = on(backend);
   settings.tolerance = 0.001;
-  settings.skip = settings.anticipate = false;
-  settings.directions = Directions::each;
+  settings.measuring.skip = settings.measuring.anticipate = false;
+  settings.measuring.directions = Directions::each;
   const Motion each = simulate(scene, settings, 40);
-  settings.directions = Directions::frozen;
-  settings.renew_after = 1;
+  settings.measuring.directions = Directions::frozen;
+  settings.measuring.renew_after = 1;
   CHECK(simulate(scene, settings, 40).hash == each.hash);
   for (const int most : {2, 5, 32}) {
     CAPTURE(most);
-    settings.renew_after = most;
+    settings.measuring.renew_after = most;
     Cloth cloth = cloth_of(scene, settings);
     for (int k = 0; k < 40; ++k) {
       const StepReport report = step(cloth, kStep);
       REQUIRE(report.iterations <= most * report.direction_updates);
     }
   }
-  settings.renew_after = 0;
+  settings.measuring.renew_after = 0;
   Cloth paper = cloth_of(scene, settings);
   std::int64_t longest = 0;
   for (int k = 0; k < 40; ++k) {
@@ -216,7 +217,7 @@ TEST_CASE("in lanes directions that nothing renews are renewed after 1024 iterat
   const auto end = [](int renew_after) {
     Settings settings = paper_settings();
     settings.tolerance = 1e-5;
-    settings.renew_after = renew_after;
+    settings.measuring.renew_after = renew_after;
     Cloth cloth = cloth_of(scene_of("chain", 40), settings);
     run(cloth, kStep, 2);
     return cloth.state_hash();
@@ -233,7 +234,7 @@ TEST_CASE("renewed and frozen directions tend to the same motion as dt does to 0
     std::vector<Vec3> ends[2];
     for (const Directions directions : {Directions::each, Directions::frozen}) {
       Settings settings = on(backend, tight(1e-10));
-      settings.directions = directions;
+      settings.measuring.directions = directions;
       Cloth cloth = cloth_of(scene, settings);
       run(cloth, 0.2 / steps, steps);
       ends[directions == Directions::each] = positions(cloth);

@@ -74,7 +74,7 @@ TEST_CASE("renumbered particles make the same motion of contacts that push one a
   for (const bool anticipate : {false, true}) {
     CAPTURE(anticipate);
     Settings settings = on(Backend::reference, tight(1e-12));
-    settings.anticipate = anticipate;
+    settings.measuring.anticipate = anticipate;
     Cloth plain = cloth_of(scene, settings);
     Cloth permuted = cloth_of(renumbered(scene, to), settings);
     int most_contacts = 0;
@@ -95,8 +95,8 @@ TEST_CASE("what a step converges to does not depend on the order of the constrai
   for (const bool anticipate : {false, true}) {
     CAPTURE(anticipate);
     Settings settings = on(Backend::reference, tight(1e-13));
-    settings.renew_after = 0;  // else the order decides how far the first directions lead
-    settings.anticipate = anticipate;
+    settings.measuring.renew_after = 0;  // else the order decides how far the first directions lead
+    settings.measuring.anticipate = anticipate;
     Cloth plain = cloth_of(scene, settings);
     Cloth other = cloth_of(shuffled, settings);
     run(plain, 0.01, 10);

@@ -22,8 +22,8 @@ Settings original() {
   Settings settings = on(Backend::reference);
   settings.isa = resolve(Isa::automatic).value();
   settings.solver = Solver::gauss_seidel;
-  settings.anticipate = settings.skip = false;
-  settings.directions = Directions::each;
+  settings.measuring.anticipate = settings.measuring.skip = false;
+  settings.measuring.directions = Directions::each;
   return settings;
 }
 
@@ -67,7 +67,7 @@ void check_scene(const SceneDescription& scene, int steps) {
       CAPTURE(name(directions));
       CAPTURE(velocity_correction);
       Settings settings = original();
-      settings.directions = directions;
+      settings.measuring.directions = directions;
       settings.velocity_correction = velocity_correction;
       check_steps(scene, settings, steps);
     }
@@ -93,7 +93,7 @@ TEST_CASE("nor of a tight tolerance, a limited impulse, or a fixed number of ite
   settings.tolerance = 1e-5;
   check_steps(scene, settings, 50);
   settings.tolerance = 0.001;
-  settings.impulse_limit = 0.002;
+  settings.measuring.impulse_limit = 0.002;
   check_steps(scene, settings, 20);
   settings = original();
   settings.iterations = 7;

@@ -24,7 +24,7 @@ constexpr double kRounding = 4 * 32 * 0x1p-24;
 
 Settings products(Settings settings = paper_settings()) {
   settings.backend = Backend::simd;
-  settings.anticipate = settings.anticipate_products = true;
+  settings.measuring.anticipate = settings.measuring.anticipate_products = true;
   return settings;
 }
 
@@ -38,9 +38,9 @@ void for_every_method(const Settings& common, F f) {
         CAPTURE(velocity_correction);
         CAPTURE(skip);
         Settings settings = common;
-        settings.directions = directions;
+        settings.measuring.directions = directions;
         settings.velocity_correction = velocity_correction;
-        settings.skip = skip;
+        settings.measuring.skip = skip;
         f(settings);
       }
     }
@@ -51,7 +51,7 @@ void for_every_method(const Settings& common, F f) {
 /// other.
 int steps_alike(const SceneDescription& scene, const Settings& settings, int steps) {
   Settings by_displacements = settings;
-  by_displacements.anticipate_products = false;
+  by_displacements.measuring.anticipate_products = false;
   Cloth expected = cloth_of(scene, by_displacements), found = cloth_of(scene, settings);
   double shortest = 1;
   for (const Constraint& c : scene.constraints) shortest = std::min(shortest, c.rest_length);
@@ -153,7 +153,7 @@ TEST_CASE("a fixed number of iterations leads where it does without products") {
   Settings settings = products();
   settings.iterations = 20;
   Cloth found = cloth_of(scene, settings);
-  settings.anticipate_products = false;
+  settings.measuring.anticipate_products = false;
   Cloth expected = cloth_of(scene, settings);
   for (int k = 0; k < 10; ++k) {
     const StepReport report = step(found, kStep), wanted = step(expected, kStep);

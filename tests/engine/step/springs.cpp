@@ -249,8 +249,8 @@ TEST_CASE("a substep of springs is what Newton's method finds by dense matrices"
   const double h = 0.01;
   for_each_way(1e-9, [&](Settings settings) {
     if (settings.backend == Backend::simd) settings.tolerance = 1e-7;
-    settings.directions = Directions::frozen;
-    settings.renew_after = 0;
+    settings.measuring.directions = Directions::frozen;
+    settings.measuring.renew_after = 0;
     settings.substeps = 1;
     for (const double compliance : {0., 1e-6, 1e-3, 1.}) {
       SceneDescription scene = scene_of("hang", 4);

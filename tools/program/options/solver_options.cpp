@@ -60,7 +60,7 @@ void add_solver_options(Verb verb, SolverOptions& options) {
   verb.option("--motion-tolerance", settings.motion_tolerance,
               "m/s by which particles may come to differ from the true motion, held by the number "
               "of substeps, small_steps (default 0: not asked for)");
-  verb.option("--impulse-limit", settings.impulse_limit,
+  verb.option("--impulse-limit", settings.measuring.impulse_limit,
               "--backend reference: N s, largest impulse of one correction (default 0: no limit)");
   verb.option("--solver", options.solver,
               "auto (default), small_steps, gauss_seidel, yarn or direct; gauss_seidel where "
@@ -79,7 +79,7 @@ void add_solver_options(Verb verb, SolverOptions& options) {
               "renewed before each iteration");
   verb.option("--velocity-correction", options.velocity_correction,
               "on or off (default): a second loop, on velocities; --scheme rattle has it always");
-  verb.option("--renew-after", settings.renew_after,
+  verb.option("--renew-after", settings.measuring.renew_after,
               "frozen directions serve for at most so many iterations (default 32; 0: until all "
               "errors along them are within tolerance)");
   verb.option("--backend", options.backend, "simd (default) or reference");
@@ -98,14 +98,15 @@ void add_solver_options(Verb verb, SolverOptions& options) {
 
 Result<Settings> settings_of(const SolverOptions& options) {
   Settings settings = options.settings;
-  Anticipate anticipate{settings.anticipate, settings.anticipate_products};
+  Anticipate anticipate{settings.measuring.anticipate, settings.measuring.anticipate_products};
   const Result<void> checks[] = {
       choose("--tolerance", options.tolerance, parse_tolerance, settings.tolerance),
       choose("--solver", options.solver, parse_choice<Solver>, settings.solver),
       choose("--scheme", options.scheme, parse_choice<Scheme>, settings.scheme),
       choose("--anticipate", options.anticipate, parse_anticipate, anticipate),
-      choose("--skip", options.skip, parse_switch, settings.skip),
-      choose("--directions", options.directions, parse_choice<Directions>, settings.directions),
+      choose("--skip", options.skip, parse_switch, settings.measuring.skip),
+      choose("--directions", options.directions, parse_choice<Directions>,
+             settings.measuring.directions),
       choose("--velocity-correction", options.velocity_correction, parse_switch,
              settings.velocity_correction),
       choose("--sleep", options.sleep, parse_switch, settings.sleep),
@@ -116,8 +117,8 @@ Result<Settings> settings_of(const SolverOptions& options) {
   for (const Result<void>& check : checks) {
     if (!check) return Error{check.error()};
   }
-  settings.anticipate = anticipate.any;
-  settings.anticipate_products = anticipate.products;
+  settings.measuring.anticipate = anticipate.any;
+  settings.measuring.anticipate_products = anticipate.products;
   const bool methods = options.anticipate || options.skip || options.directions;
   if (methods && !options.solver) settings.solver = Solver::gauss_seidel;
   const bool chooses_substeps =

@@ -256,7 +256,7 @@ Json to_json(const RunReport& report) {
       {"solver_used", name(summary.solver)},
       {"scheme", name(summary.scheme)},
       {"backend", name(settings.backend)},
-      {"anticipate_products", settings.anticipate_products},
+      {"anticipate_products", settings.measuring.anticipate_products},
       {"isa", isa(report)},
       {"threads", settings.backend == Backend::reference ? 1 : summary.threads},
       {"dt", report.plan.dt},

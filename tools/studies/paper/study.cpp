@@ -46,10 +46,10 @@ Settings settings_of(const Cell& cell, const Variant& variant) {
   settings.velocity_correction = cell.velocity_correction;
   settings.scheme = Scheme::paper;
   settings.backend = Backend::reference;
-  settings.anticipate = variant.anticipate;
-  settings.skip = variant.skip;
-  settings.directions = variant.directions;
-  settings.renew_after = 0;  // as section 4.4 has it
+  settings.measuring.anticipate = variant.anticipate;
+  settings.measuring.skip = variant.skip;
+  settings.measuring.directions = variant.directions;
+  settings.measuring.renew_after = 0;  // as section 4.4 has it
   return settings;
 }
 

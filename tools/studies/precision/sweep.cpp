@@ -81,9 +81,9 @@ Curve original(const Task& task, const KnobSet& knobs) {
   settings.solver = Solver::gauss_seidel;
   settings.scheme = Scheme::paper;
   settings.backend = Backend::reference;
-  settings.directions = Directions::each;
-  settings.anticipate = false;
-  settings.skip = false;
+  settings.measuring.directions = Directions::each;
+  settings.measuring.anticipate = false;
+  settings.measuring.skip = false;
   settings.threads = task.threads;
   return {"original", rows_of(task, settings, {knobs.tolerances, {1}, {}, {}})};
 }

@@ -172,7 +172,7 @@ TEST_CASE("positions agree with Gauss-Seidel as far as the tolerance allows") {
   constexpr double kTolerance = 1e-10;
   const SceneDescription scene = scene_of("hang", 6);
   Settings settings = on(Backend::reference, tight(kTolerance));
-  settings.renew_after = 0;
+  settings.measuring.renew_after = 0;
   Cloth one = cloth_of(scene, direct(settings)), other = cloth_of(scene, settings);
   for (int k = 0; k < 30; ++k) {
     REQUIRE(other.write_positions(positions(one)));
@@ -396,7 +396,7 @@ TEST_CASE("two runs agree bit for bit, also side by side on one model") {
 TEST_CASE("direct bears its name and refuses what it cannot do") {
   CHECK(name(Solver::direct) == "direct");
   Settings settings = direct(on(Backend::reference));
-  settings.impulse_limit = 1;
+  settings.measuring.impulse_limit = 1;
   const auto cloth = Cloth::create(model_of(scene_of("hang", 4)), settings);
   REQUIRE_FALSE(cloth);
   CHECK(cloth.error().find("impulse_limit") != std::string::npos);

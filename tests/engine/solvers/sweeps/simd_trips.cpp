@@ -26,7 +26,7 @@ struct Passed {
 Passed pass(const Model& model, int passes, bool in_trips, int threads, bool products = false) {
   Settings settings;
   settings.iterations = passes;
-  settings.anticipate_products = products;
+  settings.measuring.anticipate_products = products;
   SimdSystem system(model, settings, simd::table(supported_isas().back()));
   Passed passed{model.initial_position, {}};
   for (std::size_t i = 0; i < passed.x.size(); i += 7) passed.x.z[i] += 0.01;
