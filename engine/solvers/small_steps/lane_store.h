@@ -1,4 +1,5 @@
-/// The particles of small steps in lanes: in double, reference_store.h.
+/// The particles of small steps in lanes; in double: reference_store.h. particle_store.h says what
+/// the operations do.
 ///
 /// A sweep goes over blocks, yarns that are solved exactly and single constraints, along directions
 /// that are renewed as it goes (kernels/simd/small_steps.h, small_step_yarns.h). The rest of a load
@@ -48,7 +49,6 @@ class LaneStore {
 
   LaneStore(Substep& now, const simd::Table& table);
 
-  /// with_limits: anchors and bodies hold what is moved.
   LanePoints points(bool with_limits);
   SimdBodies& bodies() { return bodies_; }
   kernels::Vector velocity(std::uint32_t slot) { return points(false).vector(v_.data(), slot); }
@@ -56,33 +56,26 @@ class LaneStore {
     return points(false).vector(v_before_.data(), slot);
   }
 
-  // The beginning of a frame, in this order.
   void begin(kernels::VectorsView x, kernels::VectorsView v, const FramePlan& plan, Team& team);
   void accelerate(kernels::Vector gravity, kernels::VectorsView force);
-  /// Begins the bending of a frame with these accelerations.
   void begin_bending(const FramePlan& plan);
   void begin_past(Team& team);
 
-  // The prediction of a substep, by Substep::next_formula. The end of the last one returns the
-  // largest component of its departures (m/s^2), if that was asked for and it had not ended before.
   void renew_base(Team& team);
   std::optional<double> settle(bool measures, Team& team);
   void decay(double to, Team& team);
   std::optional<double> predict(Team& team);
   void bend(Team& team) { bending_.bend(u_.data(), u_before_.data(), give(), team); }
 
-  // A sweep. after(): after each family of yarns.
   template <class After>
   void sweep_yarns(const Relaxation& by, Team& team, After&& after) {
     links_.sweep_yarns(link_sweep(by), team, after);
   }
   void sweep_edges(const Relaxation& by, Team& team);
   void sweep_membrane(Team& team);
-  /// Finds which springs, and rigid constraints beside them, are out of tolerance.
   void judge_springs(Team& team);
   void judge_membrane(Team& team);
   std::int64_t count_out() const { return links_.count_out() + membrane_.count_out(); }
-  /// Calls work for each of the items (local_passes.h).
   template <class Work>
   void for_each_out(Work&& work) const {
     links_.for_each_out(work);
@@ -90,7 +83,6 @@ class LaneStore {
         [&](std::uint32_t element) { work(now_.passes.item_of_element(element)); });
   }
 
-  // Limits, and where a motion ends.
   void advance_anchors() { anchors_.advance(); }
   void begin_bodies(const FramePlan& plan);
   void advance_bodies(double part, Team& team);
@@ -98,14 +90,8 @@ class LaneStore {
   void hold_bodies(Team& team);
   void hold_by_meshes(Team& team);
   double deepest_in_body(Team& team);
-  /// The velocity v of a particle that was pushed is the mean one of this substep, and its past is
-  /// such that the next one begins as by the implicit Euler method: with v + h a, at x + h v +
-  /// h^2 a.
   void stop_at_contact(std::uint32_t slot);
-  /// The velocity is that at the end of this substep, and the past a free flight that leads to it.
   void begin_at_limit(std::uint32_t slot);
-  /// The velocity before becomes faster by as much as the present one did in a moment, and the last
-  /// way is that of a flight between the two.
   void jolt(std::uint32_t slot, kernels::Vector by);
   void set_aside() { std::ranges::copy(u_, aside_.begin()); }
   void take_past_along(Team& team);

@@ -1,5 +1,5 @@
 /// The particles of small steps in double, one after the other: the text to read beside
-/// engine/solvers/small_steps/lane_store.h, whose functions have the same names.
+/// lane_store.h. particle_store.h says what the operations do.
 #pragma once
 
 #include <iterator>
@@ -46,7 +46,6 @@ class ReferenceStore {
 
   void begin(kernels::VectorsView x, kernels::VectorsView v, const FramePlan& plan, Team& team);
   void accelerate(kernels::Vector gravity, kernels::VectorsView force);
-  /// Begins the bending of a frame with these accelerations.
   void begin_bending(const FramePlan& plan);
   void begin_past(Team& team);
   void renew_base(Team&) {}
@@ -54,7 +53,6 @@ class ReferenceStore {
   void decay(double to, Team& team);
   void bend(Team& team);
 
-  /// after(): after each family of yarns.
   template <class After>
   void sweep_yarns(const Relaxation& by, Team&, After&& after) {
     out_.clear();
@@ -75,7 +73,6 @@ class ReferenceStore {
   void judge_springs(Team& team);
   void judge_membrane(Team& team);
   std::int64_t count_out() const { return std::ssize(out_); }
-  /// Calls work for each of the items (local_passes.h).
   template <class Work>
   void for_each_out(Work&& work) const {
     for (const std::uint32_t item : out_) work(item);

@@ -1,6 +1,5 @@
-/// A frame of small steps from top to bottom. The particles are in a store: in lanes
-/// (lane_store.h), or in double (reference_store.h), the text to read beside it. The two agree in
-/// the names of their functions.
+/// A frame of small steps from top to bottom. The particles are in a store (particle_store.h): in
+/// lanes (lane_store.h), or in double (reference_store.h), the text to read beside it.
 #include "engine/solvers/small_steps/small_steps.h"
 
 #include <algorithm>
@@ -9,13 +8,14 @@
 #include "engine/solvers/small_steps/contact_times.h"
 #include "engine/solvers/small_steps/lane_store.h"
 #include "engine/solvers/small_steps/linkage.h"
+#include "engine/solvers/small_steps/particle_store.h"
 #include "engine/solvers/small_steps/reference_store.h"
 #include "engine/solvers/small_steps/substep.h"
 
 namespace weft {
 namespace {
 
-template <class Store>
+template <ParticleStore Store>
 class StoredSmallSteps final : public SmallSteps {
  public:
   StoredSmallSteps(const Model& model, const Settings& settings, const simd::Table& table)

@@ -22,12 +22,12 @@ ReferenceSolver::ReferenceSolver(const Model& model, const Settings& settings)
     tolerance_.push_back(to_tolerance ? settings.tolerance * rest : 0);
   }
   reserve(0);
-  if (settings.skip && !settings.anticipate) mask_.resize(model.slots());
-  if (settings.skip) moved_.resize(model.slots());
-  if (!settings.anticipate) return;
+  if (settings.measuring.skip && !settings.measuring.anticipate) mask_.resize(model.slots());
+  if (settings.measuring.skip) moved_.resize(model.slots());
+  if (!settings.measuring.anticipate) return;
   row_product_.resize(layout_.rows.items.size());
   row_ready_.resize(s.plain);
-  if (settings.skip) changed_.resize(layout_.block_first.size() - 1);
+  if (settings.measuring.skip) changed_.resize(layout_.block_first.size() - 1);
   if (!model.hubs.empty()) hub_motion_.resize(model.slots());
 }
 
@@ -55,7 +55,7 @@ void ReferenceSolver::reserve(std::size_t contacts) {
     velocity_tolerance_.resize(size);
     zero_.resize(size);
   }
-  if (settings_.anticipate) {
+  if (settings_.measuring.anticipate) {
     error_.resize(size);
     pending_.resize(size);
   }
@@ -124,9 +124,9 @@ reference::Workspace ReferenceSolver::workspace() {
 }
 
 reference::Method ReferenceSolver::method(const kernels::LoopLimits& limits) const {
-  return {.anticipate = settings_.anticipate,
-          .skip = settings_.skip,
-          .frozen_directions = settings_.directions == Directions::frozen,
+  return {.anticipate = settings_.measuring.anticipate,
+          .skip = settings_.measuring.skip,
+          .frozen_directions = settings_.measuring.directions == Directions::frozen,
           .limits = limits};
 }
 
@@ -138,7 +138,7 @@ reference::Relaxation ReferenceSolver::position_problem(kernels::VectorsView x, 
   if (first_round) std::ranges::fill(impulse_, 0.0);
   reference::Relaxation r = problem(x, contacts.count());
   if (laws != nullptr) r.softness = softness_.data();
-  if (settings_.impulse_limit > 0) r.limit = settings_.impulse_limit * h;
+  if (settings_.measuring.impulse_limit > 0) r.limit = settings_.measuring.impulse_limit * h;
   return r;
 }
 
@@ -201,7 +201,7 @@ kernels::LoopResult ReferenceSolver::correct_velocities(kernels::VectorsView x,
   r.x = v;
   r.target = zero_.data();
   r.tolerance = velocity_tolerance_.data();
-  if (settings_.impulse_limit > 0) r.limit = settings_.impulse_limit;
+  if (settings_.measuring.impulse_limit > 0) r.limit = settings_.measuring.impulse_limit;
   const reference::ContactLists lists{contacts.first.data(), contacts.next.data()};
   return reference::relax_velocities(r, layout_.topology(),
                                      model_.has_spheres() ? lists : reference::ContactLists{},

@@ -28,7 +28,7 @@ kernels::LoopResult SimdSolver::solve_positions(kernels::VectorsView x, kernels:
     const double tau = s_.settings_.iterations > 0 ? 1 : s_.settings_.contact_tolerance;
     s_.place_contacts(store, tau, !first_round);
   }
-  const auto directions = s_.settings_.directions == Directions::frozen
+  const auto directions = s_.settings_.measuring.directions == Directions::frozen
                               ? kernels::Directions::frozen
                               : kernels::Directions::each;
   SimdLoop loop(s_, {.x = x, .start = start}, team);

@@ -50,14 +50,14 @@ SimdSystem::SimdSystem(const Model& model, const Settings& settings, const simd:
     velocities_ =
         scaled([&](double) { return fixed_iterations ? 1 : settings.velocity_tolerance; });
   }
-  if (settings.anticipate_products) pulls_.emplace(model.pulls());
+  if (settings.measuring.anticipate_products) pulls_.emplace(model.pulls());
   if (layout_.has_ropes || model.constraints.has_springs()) impulse_.resize(size);
   if (model.constraints.has_springs()) {
     springs_.emplace().resize(size);
     springs_->rest = layout_.rest_length;
   }
-  if (settings.skip && settings.iterations == 0) {
-    if (!settings.anticipate && !springs_) mask_.resize(layout_.slots);
+  if (settings.measuring.skip && settings.iterations == 0) {
+    if (!settings.measuring.anticipate && !springs_) mask_.resize(layout_.slots);
     changed_.resize(layout_.chunks.size());
     stale_.resize(layout_.chunks.size());
   }
@@ -95,7 +95,8 @@ ScaledConstraints SimdSystem::scaled(Tolerance&& tolerance) const {
     block.gain_a[c % kernels::kLanes] = static_cast<float>(-tau * tau * layout_.share_a[c]);
     block.gain_b[c % kernels::kLanes] = static_cast<float>(tau * tau * layout_.share_b[c]);
   }
-  if (settings_.anticipate_products) scaled.weight = model_.pulls().weights(scaled.blocks);
+  if (settings_.measuring.anticipate_products)
+    scaled.weight = model_.pulls().weights(scaled.blocks);
   return scaled;
 }
 

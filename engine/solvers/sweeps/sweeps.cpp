@@ -32,13 +32,13 @@ LoopResult Sweeps::sweep(const PositionTask& task, bool first, const LoopLimits&
 LoopResult Sweeps::solve_positions(const PositionTask& task, Team& team) {
   if (settings_.iterations > 0) {
     const LoopLimits limits{.fixed_iterations = settings_.iterations,
-                            .renew_after = settings_.renew_after};
+                            .renew_after = settings_.measuring.renew_after};
     return sweep(task, task.first_round, limits, team);
   }
   LoopResult sum;
   Stall stall(tuning::kRoundPatience);
   for (;;) {
-    const int renew_after = stall.is_near() ? 1 : settings_.renew_after;
+    const int renew_after = stall.is_near() ? 1 : settings_.measuring.renew_after;
     const int part = std::min(task.max_iterations - sum.iterations, tuning::kPassesBetweenLooks);
     const bool first = task.first_round && sum.iterations == 0;
     count(sum, sweep(task, first, {.max_iterations = part, .renew_after = renew_after}, team));
@@ -53,7 +53,7 @@ LoopResult Sweeps::solve_positions(const PositionTask& task, Team& team) {
 LoopResult Sweeps::correct_velocities(const VelocityTask& task, Team& team) {
   const LoopLimits limits{.fixed_iterations = settings_.iterations,
                           .max_iterations = task.max_iterations,
-                          .renew_after = settings_.renew_after};
+                          .renew_after = settings_.measuring.renew_after};
   return reference_ ? reference_->correct_velocities(task.x, task.v, task.contacts, limits)
                     : simd_->correct_velocities(task.x, task.v, task.contacts, limits, team);
 }
