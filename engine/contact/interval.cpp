@@ -99,9 +99,10 @@ void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyCloc
 
 void SurfaceContacts::advance(ContactParticles& particles, const BodyClock& clock, Team& team) {
   if (empty()) return;
-  response_.advance(clock, points_, near_);
-  squeeze_.share(scene(particles, clock), near_);
-  untangling_.pull(scene(particles, clock));
+  const ContactScene scene = this->scene(particles, clock);
+  response_.advance(scene, near_);
+  squeeze_.share(scene, near_);
+  untangling_.pull(scene);
   contacts_.begin_substep(points_, particles, clock.h(), clock.stands(), team);
 }
 
@@ -195,7 +196,7 @@ void SurfaceContacts::expect_failures(const ContactScene& scene) {
   }
   if (!any) return;
   response_.begin(scene, near_);
-  points_.place_vertices_asked(scene.clock);
+  scene.present.place_vertices(scene.clock);
 }
 
 SurfaceContacts::Touching SurfaceContacts::count_touching() const {
@@ -212,7 +213,7 @@ SurfaceContacts::Touching SurfaceContacts::count_touching() const {
 void SurfaceContacts::read_touching(const ContactParticles& particles, const BodyClock& clock,
                                     std::vector<BodyTouch>& touches) const {
   const auto at = [&](std::uint32_t point) {
-    return points_.is_of_cloth(point) ? particles.position(point) : points_.to(point);
+    return points_.is_of_cloth(point) ? particles.position(point) : present_[point].x;
   };
   for (const NearPairs& near : near_) {
     for (std::size_t i = 0; i < near.list.size(); ++i) {
@@ -241,9 +242,9 @@ void SurfaceContacts::read_touching(const ContactParticles& particles, const Bod
 }
 
 std::size_t SurfaceContacts::bytes() const {
-  std::size_t bytes = points_.bytes() + search_.bytes() + near_search_.bytes() + response_.bytes() +
-                      squeeze_.bytes() + tangles_.bytes() + untangling_.bytes() +
-                      bytes_of(impulses_.of_body) + zones_.bytes();
+  std::size_t bytes = points_.bytes() + present_.bytes() + search_.bytes() + near_search_.bytes() +
+                      response_.bytes() + squeeze_.bytes() + tangles_.bytes() +
+                      untangling_.bytes() + bytes_of(impulses_.of_body) + zones_.bytes();
   for (const PairList& list : candidates_) bytes += list.bytes();
   for (const NearPairs& near : near_)
     bytes +=

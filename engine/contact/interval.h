@@ -51,6 +51,7 @@ class SurfaceContacts {
       : model_(model),
         room_(room),
         points_(model),
+        present_(points_),
         search_(table),
         near_search_(table),
         response_(table),
@@ -93,7 +94,7 @@ class SurfaceContacts {
   }
   /// The surface of a mesh that the slot touches in this substep, and its normal there.
   std::pair<TouchedSurface, kernels::Vector> touched_by(std::uint32_t slot) const {
-    return response_.touched_by(points_, near_, slot);
+    return response_.touched_by(points_, present_, near_, slot);
   }
   /// An impulse that a body has given there.
   void load(const TouchedSurface& surface, const BodyClock& clock, kernels::Vector x,
@@ -142,7 +143,7 @@ class SurfaceContacts {
 
  private:
   ContactScene scene(ContactParticles& particles, const BodyClock& clock) {
-    return {model_, clock, points_, particles, impulses_, tangles_, room_};
+    return {model_, clock, points_, present_, particles, impulses_, tangles_, room_};
   }
   void begin_interval(ContactParticles& particles, const BodyClock& clock, int substeps,
                       Team& team);
@@ -156,6 +157,7 @@ class SurfaceContacts {
   const Model& model_;
   Room& room_;
   ContactPoints points_;
+  PresentPoints present_;
   CandidateSearch search_;
   NearSearch near_search_;
   Response response_;

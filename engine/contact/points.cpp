@@ -47,127 +47,26 @@ bool is_same(const reference::Placement& a, const reference::Placement& b) {
 }  // namespace
 
 void ContactPoints::begin(const BodyClock& clock) {
-  slots_ = model_.slots();
-  largest_thickness_ = 0;
   has_tubes_ = false;
   speeds_ = {};
-  surface_pairs_.clear();
-  std::size_t points = slots_, count = 1;
-  const std::size_t count_before = surfaces_.size();
-  bool has_other_places = start_.capacity() == 0;
-  for (std::size_t body = 0; body < clock.bodies().size(); ++body) {
-    if (clock.bodies()[body].mesh == nullptr) continue;
-    add_cloth();
-    ContactSurface& surface = surface_for(clock, body, count);
-    if (std::exchange(surface.first_point, static_cast<std::uint32_t>(points)) != points) {
-      surface.placing = 0;
-      has_other_places = true;
-    }
-    points += clock.bodies()[body].from.size();
-    surface_pairs_.push_back({kClothSurface, static_cast<std::uint16_t>(count)});
-    ++count;
-  }
-  touches_itself_ = model_.self_contact.on;
-  if (touches_itself_) prepare_for_itself();
-  if (empty()) count = 0;
-  surfaces_.resize(count);
-  has_other_places = has_other_places || count != count_before;
-  if (count == 0) return;
+  const bool have_other_numbers = ContactSurfaces::begin(clock);
+  if (empty()) return;
   particles_.clear();
-  for (std::uint32_t slot = 0; slot < slots_; ++slot)
-    if (model_.is_particle(slot)) particles_.push_back(slot);
+  for (std::uint32_t slot = 0; slot < slots(); ++slot)
+    if (model().is_particle(slot)) particles_.push_back(slot);
   forget_active();
-  if (has_other_places || surface_of_.size() != points - slots_) make_room(clock, points);
+  if (have_other_numbers || start_.capacity() == 0) make_room();
 }
 
 /// Only vertices that are looked at cost something.
-void ContactPoints::make_room(const BodyClock& clock, std::size_t points) {
-  for (auto* vectors : {&start_, &end_}) vectors->make_room(points);
-  present_.make_room(points);
-  for (auto* quads : {&start_quads_, &way_quads_, &place_quads_}) quads->make_room(4 * points);
-  box_.make_room(points);
-  tube_.make_room(points);
-  lane_tubes_.make_room(points);
-  for (auto* numbers : {&laid_, &placed_}) numbers->make_room(points - slots_);
-  is_active_.make_room(points - slots_);
-  surface_of_.clear();
-  for (std::uint16_t i = 1; i < surfaces_.size(); ++i) {
-    const std::size_t vertices = clock.bodies()[surfaces_[i].body].from.size();
-    surface_of_.insert(surface_of_.end(), vertices, i);
-  }
-}
-
-/// It is there as soon as there is something to touch.
-void ContactPoints::add_cloth() {
-  if (!surfaces_.empty()) return;
-  ContactSurface& cloth = surfaces_.emplace_back();
-  cloth.triangles = &model_.touched_surface();
-  cloth.own_tree = BoxTree(cloth.triangles->in_order);
-  shortest_.assign(slots_, std::numeric_limits<double>::infinity());
-  for (const auto& [a, b] : cloth.triangles->edges) {
-    const double l = length(model_.initial_position[a] - model_.initial_position[b]);
-    shortest_[a] = std::min(shortest_[a], l);
-    shortest_[b] = std::min(shortest_[b], l);
-  }
-}
-
-void ContactPoints::prepare_for_itself() {
-  add_cloth();
-  ContactSurface& cloth = surfaces_[kClothSurface];
-  cloth.thickness = model_.self_contact.thickness;
-  cloth.friction = model_.self_contact.friction;
-  largest_thickness_ = std::max(largest_thickness_, cloth.thickness);
-  if (!rest_.empty()) return;
-  sewn_ = SewnPoints(model_);
-  rest_ = RestDistances(model_, cloth.thickness, sewn_);
-}
-
-/// The surface of a body, which is the one that was there in the last frame if that had its shape.
-ContactSurface& ContactPoints::surface_for(const BodyClock& clock, std::size_t body,
-                                           std::size_t place) {
-  const TravellingBody& b = clock.bodies()[body];
-  if (place == surfaces_.size()) surfaces_.emplace_back();
-  ContactSurface& surface = surfaces_[place];
-  if (surface.shape != b.shape || surface.mesh != b.mesh) {
-    const MeshShape& mesh = *b.mesh;
-    surface.triangles = &mesh.surface;
-    surface.two_sided = mesh.two_sided;
-    surface.is_open = mesh.is_open;
-    surface.own_tree = {};
-    surface.active.make_room(mesh.surface.triangles.size());
-    surface.shape = b.shape;
-    surface.mesh = b.mesh;
-    surface.is_rigid = false;
-    surface.placing = 0;
-  }
-  if (std::exchange(surface.thickness, b.thickness) != b.thickness) surface.placing = 0;
-  take_vertices(surface, b);
-  surface.body = static_cast<std::uint32_t>(body);
-  surface.friction = clock.motions()[body].friction;
-  largest_thickness_ = std::max(largest_thickness_, b.thickness);
-  return surface;
-}
-
-void ContactPoints::take_vertices(ContactSurface& surface, const TravellingBody& body) {
-  const Vector* of_shape = surface.mesh->vertices.data();
-  const bool is_rigid = body.from.data() == of_shape && body.to.data() == of_shape;
-  surface.from = body.from;
-  surface.to = body.to;
-  if (is_rigid && surface.is_rigid) return;
-  surface.is_rigid = is_rigid;
-  surface.longest = 0;
-  if (is_rigid) {
-    surface.extent = surface.tree().box();
-    return;
-  }
-  if (surface.own_tree.empty()) surface.own_tree = BoxTree(surface.triangles->in_order);
-  surface.extent = Box::none();
-  for (std::size_t i = 0; i < body.from.size(); ++i) {
-    const Vector way = body.to[i] - body.from[i];
-    surface.longest = std::max(surface.longest, dot(way, way));
-    surface.extent.add(box_around(body.from[i], body.to[i], 0));
-  }
-  surface.longest = std::sqrt(surface.longest);
+void ContactPoints::make_room() {
+  for (auto* vectors : {&start_, &end_}) vectors->make_room(count());
+  for (auto* quads : {&start_quads_, &way_quads_}) quads->make_room(4 * count());
+  box_.make_room(count());
+  tube_.make_room(count());
+  lane_tubes_.make_room(count());
+  for (auto* numbers : {&laid_, &placed_}) numbers->make_room(count() - slots());
+  is_active_.make_room(count() - slots());
 }
 
 void ContactPoints::look_ahead(const ContactParticles& cloth, const BodyClock& clock) {
@@ -176,7 +75,7 @@ void ContactPoints::look_ahead(const ContactParticles& cloth, const BodyClock& c
     end_[slot] = cloth.position(slot) - start_[slot];
   }
   speeds_ =
-      speeds_of_step(model_, {start_.data(), slots_}, {end_.data(), slots_}, of_bodies(), clock);
+      speeds_of_step(model(), {start_.data(), slots()}, {end_.data(), slots()}, of_bodies(), clock);
 }
 
 void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyClock& clock,
@@ -215,7 +114,7 @@ void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyCloc
   way_of_near_ = (to_ - from_) * time * speeds_.of_near;
   const double of_other = (from_ - before) * time * speeds_.of_bodies;
   travelled_ = std::sqrt(travelled);
-  travelled_ += touches_itself_ ? std::max(travelled_, of_other) : of_other;
+  travelled_ += touches_itself() ? std::max(travelled_, of_other) : of_other;
   find_reach();
   if (!has_tubes_) until_ = tubes_end(clock.share_after(clock.substeps_left()));
   time_left_ = (until_ - from_) * time;
@@ -224,7 +123,8 @@ void ContactPoints::begin_interval(const ContactParticles& cloth, const BodyCloc
     write_box(slot, reach_[slot] + beside_itself);
     way_quads_[4 * slot + 3] = static_cast<float>(reach_[slot]);
   }
-  if (touches_itself_) surfaces_[kClothSurface].normals.begin(this->cloth(), start_.data(), false);
+  if (touches_itself())
+    surfaces()[kClothSurface].normals.begin(this->cloth(), start_.data(), false);
   for (ContactSurface& surface : of_bodies()) {
     const PoseTravel& travel = clock.bodies()[surface.body].travel;
     const auto before = std::exchange(surface.begins, travel.at(from_));
@@ -255,7 +155,7 @@ void ContactPoints::write_start_and_way(std::size_t point) {
 }
 
 void ContactPoints::activate(std::uint16_t surface, std::uint32_t triangle) {
-  ContactSurface& s = surfaces_[surface];
+  ContactSurface& s = surfaces()[surface];
   if (std::exchange(s.active[triangle], layings_) == layings_) return;
   for (const std::uint32_t corner : s.triangles->triangles[triangle]) {
     activate_vertex(s.first_point + corner);
@@ -265,13 +165,13 @@ void ContactPoints::activate(std::uint16_t surface, std::uint32_t triangle) {
 }
 
 void ContactPoints::forget_active() {
-  for (const std::uint32_t point : active_) is_active_[point - slots_] = 0;
+  for (const std::uint32_t point : active_) is_active_[point - slots()] = 0;
   active_.clear();
   rounding_of_vertices_ = 0;
 }
 
 void ContactPoints::activate_vertex(std::uint32_t point) {
-  if (std::exchange(is_active_[point - slots_], std::uint8_t{1}) != 0) return;
+  if (std::exchange(is_active_[point - slots()], std::uint8_t{1}) != 0) return;
   active_.push_back(point);
   place_vertex(point);
   const float rounding = rounding_at(length(start_[point] - origin_));
@@ -281,7 +181,7 @@ void ContactPoints::activate_vertex(std::uint32_t point) {
 /// In the present interval.
 void ContactPoints::place_vertex(std::uint32_t point) {
   const ContactSurface& surface = surface_of(point);
-  if (std::exchange(placed_[point - slots_], surface.placing) == surface.placing) return;
+  if (std::exchange(placed_[point - slots()], surface.placing) == surface.placing) return;
   const std::size_t i = point - surface.first_point;
   const Vector from = surface.from[i], way = surface.to[i] - from;
   start_[point] = surface.begins.placed(from + from_ * way);
@@ -293,8 +193,8 @@ void ContactPoints::place_vertex(std::uint32_t point) {
 }
 
 void ContactPoints::find_reach() {
-  ways_.resize(slots_);
-  reach_.resize(slots_);
+  ways_.resize(slots());
+  reach_.resize(slots());
   largest_way_ = 0;
   for (const std::uint32_t slot : particles_) {
     ways_[slot] = reach_[slot] = length(way(slot) - drift_);
@@ -308,13 +208,13 @@ void ContactPoints::find_reach() {
   const double spare = to_ > from_ ? tuning::kContactSpare : tuning::kContactWideSpare;
   for (const std::uint32_t slot : particles_) {
     reach_[slot] = strays(slot, tuning::kContactReach * std::max(reach_[slot], way_of_near_)) +
-                   spare * largest_thickness_;
+                   spare * largest_thickness();
     largest_reach_ = std::max(largest_reach_, reach_[slot]);
   }
 }
 
 double ContactPoints::strays(std::uint32_t slot, double by) const {
-  return std::min(by, tuning::kContactStray * shortest_[slot]);
+  return std::min(by, tuning::kContactStray * shortest_edge(slot));
 }
 
 /// Tubes that reach over several cells meet many others, and those of cloth that flutters are soon
@@ -322,8 +222,8 @@ double ContactPoints::strays(std::uint32_t slot, double by) const {
 double ContactPoints::tubes_end(double end) const {
   double edges = 0, ways = 0;
   for (const std::uint32_t slot : particles_) {
-    if (shortest_[slot] == std::numeric_limits<double>::infinity()) continue;
-    edges += shortest_[slot];
+    if (shortest_edge(slot) == std::numeric_limits<double>::infinity()) continue;
+    edges += shortest_edge(slot);
     ways += ways_[slot];
   }
   const double interval = to_ - from_;
@@ -336,10 +236,10 @@ void ContactPoints::write_box(std::size_t point, double reach) {
 
 /// m, for the sake of what it does not go on to do as in this interval.
 double ContactPoints::beyond_for_itself(std::uint32_t slot, double length_of_way) const {
-  if (!touches_itself_) return 0;
+  if (!touches_itself()) return 0;
   const double of_speeding = tuning::kTubeAcceleration / 2 * time_left_ * time_left_;
   return std::min(
-      {tuning::kTubeOfEdge * shortest_[slot], tuning::kTubeOfWay * length_of_way, of_speeding});
+      {tuning::kTubeOfEdge * shortest_edge(slot), tuning::kTubeOfWay * length_of_way, of_speeding});
 }
 
 /// It holds until the step ends if the point goes on as in this interval.
@@ -350,7 +250,7 @@ Tube ContactPoints::tube_around(std::uint32_t slot) const {
       tuning::kContactReach * length(way - drift_) + (tuning::kContactWideReach - 1) * reach_[slot];
   const double reach = reach_[slot] + strays(slot, by) +
                        (to_ > from_ ? tuning::kContactWideSpare : tuning::kContactStandingSpare) *
-                           largest_thickness_ +
+                           largest_thickness() +
                        beside_itself() +
                        beyond_for_itself(slot, intervals * (until_ - from_) * length(way));
   const Vector begins = x - (intervals * (from_ - laid_from_)) * way,
@@ -363,7 +263,7 @@ void ContactPoints::lay_tubes() {
   for (const std::uint32_t slot : particles_) set_tube(slot, tube_around(slot));
   ++layings_;
   forget_active();
-  if (touches_itself_) surfaces_[kClothSurface].may_cross.assign(cloth().triangles.size(), 0);
+  if (touches_itself()) surfaces()[kClothSurface].may_cross.assign(cloth().triangles.size(), 0);
   for (ContactSurface& surface : of_bodies()) surface.may_cross.assign(cloth().triangles.size(), 0);
   has_tubes_ = true;
 }
@@ -382,28 +282,7 @@ void ContactPoints::lay_vertex(std::uint32_t point) {
   const Vector begins = seen.begins.placed(a), ends = seen.ends.placed(b);
   set_tube(point, {box_around(begins, begins, seen.beyond + beyond),
                    box_around(ends, ends, seen.beyond + beyond)});
-  laid_[point - slots_] = layings_;
-}
-
-void ContactPoints::place_vertices_asked(const BodyClock& clock) {
-  const double rate = 1 / clock.h();
-  const bool are_placed = std::exchange(are_placed_, true);
-  for (const std::uint32_t point : asked_) {
-    if (is_of_cloth(point)) continue;
-    const ContactSurface& surface = surface_of(point);
-    if (are_placed && surface.stands) continue;
-    const reference::BodyMotion& motion = clock.motions()[surface.body];
-    const std::uint32_t vertex = point - surface.first_point;
-    const Vector from = clock.vertex(surface.body, vertex, motion.from, clock.share_after(-1)),
-                 to = clock.vertex(surface.body, vertex, motion.to, clock.share_after(0));
-    set_present(point, {from, to, rate * (to - from)});
-  }
-}
-
-void ContactPoints::read_cloth(const ContactParticles& cloth) {
-  for (const std::uint32_t point : asked_) {
-    if (is_of_cloth(point)) set_present(point, cloth.read(point));
-  }
+  laid_[point - slots()] = layings_;
 }
 
 void ContactPoints::measure_moves(const ContactParticles& cloth) {
@@ -420,7 +299,7 @@ float ContactPoints::largest_move() const {
   }
   const double of_cloth = std::sqrt(largest);
   return static_cast<float>(
-      of_cloth + (touches_itself_ ? std::max(of_cloth, way_of_bodies_) : way_of_bodies_));
+      of_cloth + (touches_itself() ? std::max(of_cloth, way_of_bodies_) : way_of_bodies_));
 }
 
 bool ContactPoints::holds_end(std::uint32_t point) const { return holds(point, end_[point]); }
@@ -442,7 +321,7 @@ bool ContactPoints::holds(std::uint32_t point, Vector place) const {
 }
 
 void ContactPoints::take_way_in(std::uint32_t point) {
-  box_[point].add(box_around(start_[point] - origin_, end_[point] - origin_, largest_thickness_));
+  box_[point].add(box_around(start_[point] - origin_, end_[point] - origin_, largest_thickness()));
 }
 
 void ContactPoints::set_end(std::uint32_t point, Vector x) {
@@ -451,16 +330,10 @@ void ContactPoints::set_end(std::uint32_t point, Vector x) {
 }
 
 std::size_t ContactPoints::bytes() const {
-  std::size_t bytes = bytes_of(surfaces_) + bytes_of(surface_pairs_) + bytes_of(particles_) +
-                      bytes_of(surface_of_) + bytes_of(start_) + bytes_of(end_) + bytes_of(reach_) +
-                      bytes_of(ways_) + bytes_of(box_) + bytes_of(tube_) + bytes_of(lane_tubes_) +
-                      bytes_of(start_quads_) + bytes_of(way_quads_) + bytes_of(place_quads_) +
-                      bytes_of(asked_) + bytes_of(present_) + bytes_of(laid_) +
-                      bytes_of(shortest_) + bytes_of(placed_) + bytes_of(active_) +
-                      bytes_of(is_active_);
-  for (const ContactSurface& surface : surfaces_)
-    bytes += surface.own_tree.bytes() + surface.normals.bytes() + bytes_of(surface.active);
-  return bytes;
+  return ContactSurfaces::bytes() + bytes_of(particles_) + bytes_of(start_) + bytes_of(end_) +
+         bytes_of(reach_) + bytes_of(ways_) + bytes_of(box_) + bytes_of(tube_) +
+         bytes_of(lane_tubes_) + bytes_of(start_quads_) + bytes_of(way_quads_) + bytes_of(laid_) +
+         bytes_of(placed_) + bytes_of(active_) + bytes_of(is_active_);
 }
 
 }  // namespace weft

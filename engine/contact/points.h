@@ -1,66 +1,27 @@
-/// The surfaces that may touch in an interval of some substeps, and their points: the slots of the
-/// cloth, and then the vertices of each body that is a mesh.
+/// Where the points of surfaces are in an interval of some substeps, and where they are expected to
+/// come to.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "engine/bodies/body_clock.h"
-#include "engine/contact/features.h"
-#include "engine/contact/look.h"
 #include "engine/contact/particles.h"
-#include "engine/contact/rest_distances.h"
-#include "engine/contact/sewn_points.h"
 #include "engine/contact/speeds.h"
-#include "engine/contact/surface.h"
-#include "engine/model/model.h"
-#include "engine/triangles/box_tree.h"
+#include "engine/contact/surfaces.h"
+#include "engine/sparse_array.h"
 #include "kernels/vectors.h"
 
 namespace weft {
 
-class ContactPoints {
+class ContactPoints : public ContactSurfaces {
  public:
-  explicit ContactPoints(const Model& model) : model_(model) {}
+  using ContactSurfaces::ContactSurfaces;
 
-  const Model& model() const { return model_; }
   /// Begins a frame.
   void begin(const BodyClock& clock);
-  /// The cloth's first, where there is something to touch.
-  const std::vector<ContactSurface>& surfaces() const { return surfaces_; }
-  std::vector<ContactSurface>& surfaces() { return surfaces_; }
-  const TriangleSurface& cloth() const { return *surfaces_[kClothSurface].triangles; }
-  /// Which of them may touch: the cloth and each body. Besides, the cloth itself may.
-  const std::vector<SurfacePair>& surface_pairs() const { return surface_pairs_; }
-  bool touches_itself() const { return touches_itself_; }
-  bool empty() const { return surface_pairs_.empty() && !touches_itself_; }
-  /// m, that the features of a pair keep from each other.
-  double thickness_of(const Pair& pair) const {
-    return pair.is_within_cloth() ? rest_.of(pair) : later(pair).thickness;
-  }
-  /// Sewn points of the cloth.
-  const SewnPoints& sewn() const { return sewn_; }
-  const ContactSurface& later(const Pair& pair) const { return later_surface(surfaces_, pair); }
-  ContactSurface& later(const Pair& pair) { return later_surface(surfaces_, pair); }
-  std::size_t slots() const { return slots_; }
-  bool is_of_cloth(std::uint32_t point) const { return point < slots_; }
-  /// The surface of a vertex of a body.
-  const ContactSurface& surface_of(std::uint32_t point) const {
-    return surfaces_[surface_of_[point - slots_]];
-  }
-  /// 1/kg; 0 of the vertices of bodies.
-  double inverse_mass(std::uint32_t point) const {
-    return is_of_cloth(point) ? model_.inverse_mass[point] : 0;
-  }
-  double largest_inverse_mass(const std::array<std::uint32_t, 4>& points) const {
-    double largest = 0;
-    for (const std::uint32_t point : points) largest = std::max(largest, inverse_mass(point));
-    return largest;
-  }
-
   /// Finds the speeds of a step, whose first substep is predicted. While bodies stand nobody
   /// asks.
   void look_ahead(const ContactParticles& cloth, const BodyClock& clock);
@@ -72,21 +33,20 @@ class ContactPoints {
   void activate(std::uint16_t surface, std::uint32_t triangle);
   /// m, that a point may come off the way that it is expected to take: a share of the ways that its
   /// neighbours take, and that bodies do, for these may take it along.
-  double reach(std::uint32_t point) const { return point < slots_ ? reach_[point] : 0; }
+  double reach(std::uint32_t point) const { return is_of_cloth(point) ? reach_[point] : 0; }
   double largest_reach() const { return largest_reach_; }
   kernels::Vector way(std::uint32_t point) const { return end_[point] - start_[point]; }
   /// m, that a point of the cloth and one of a body may be expected to move beside each other, at
   /// most: in the interval, and since the last one began.
   float largest_way() const {
-    const double of_both = touches_itself_ ? 2 * largest_way_ : 0;
+    const double of_both = touches_itself() ? 2 * largest_way_ : 0;
     return static_cast<float>(std::max(largest_way_ + way_of_bodies_, of_both));
   }
   float travelled() const { return static_cast<float>(travelled_); }
   /// m, that two points of a pair may come off their ways, together.
-  double largest_reach_of_pair() const { return (touches_itself_ ? 2 : 1) * largest_reach_; }
+  double largest_reach_of_pair() const { return (touches_itself() ? 2 : 1) * largest_reach_; }
   /// m, that they have moved in the interval, once moves are measured.
   float largest_move() const;
-  double largest_thickness() const { return largest_thickness_; }
   kernels::Vector origin() const { return origin_; }
   /// Where the point was when the interval began.
   kernels::Vector start(std::uint32_t point) const { return start_[point]; }
@@ -95,7 +55,7 @@ class ContactPoints {
   /// A tube around those of all intervals until the step ends, as far as known when candidates were
   /// looked for. Those of vertices are made when they are first asked for.
   const Tube& tube(std::uint32_t point) {
-    if (point >= slots_ && laid_[point - slots_] != layings_) lay_vertex(point);
+    if (!is_of_cloth(point) && laid_[point - slots()] != layings_) lay_vertex(point);
     return tube_[point];
   }
   /// The same as kernels read it: of all points, those of vertices once they are made.
@@ -119,31 +79,6 @@ class ContactPoints {
   /// In quads, from the origin. The fourth of a way is the point's reach.
   const float* starts() const { return start_quads_.data(); }
   const float* ways() const { return way_quads_.data(); }
-
-  /// These points alone are asked for in the substeps of the interval.
-  void ask_for(std::span<const std::uint32_t> points) {
-    asked_.assign(points.begin(), points.end());
-    are_placed_ = false;
-  }
-  /// Where vertices that are asked for are when the present substep begins and ends.
-  void place_vertices_asked(const BodyClock& clock);
-  /// Where those of the cloth have come to.
-  void read_cloth(const ContactParticles& cloth);
-  const float* places() const { return place_quads_.data(); }
-  /// A point that was asked for, in the present substep: of the cloth, as it was last read.
-  const ContactParticle& present(std::uint32_t point) const { return present_[point]; }
-  void set_present(std::uint32_t point, const ContactParticle& particle) {
-    present_[point] = particle;
-    write(place_quads_, point, particle.x - origin_);
-  }
-  /// Those of the cloth, once they were moved: as it keeps them.
-  void read_present(const std::array<std::uint32_t, 4>& points, const ContactParticles& cloth) {
-    for (const std::uint32_t point : points)
-      if (is_of_cloth(point)) set_present(point, cloth.read(point));
-  }
-  /// The place of a vertex that was asked for, where the substep begins and ends.
-  kernels::Vector from(std::uint32_t point) const { return present_[point].start; }
-  kernels::Vector to(std::uint32_t point) const { return present_[point].x; }
 
   /// Where any vertex is when the present substep ends.
   kernels::Vector vertex_now(const BodyClock& clock, std::uint32_t point) const {
@@ -183,22 +118,12 @@ class ContactPoints {
     quads[4 * point + 1] = static_cast<float>(v.y);
     quads[4 * point + 2] = static_cast<float>(v.z);
   }
-  std::span<ContactSurface> of_bodies() {
-    return std::span(surfaces_).subspan(std::min<std::size_t>(1, surfaces_.size()));
-  }
-  std::span<const ContactSurface> of_bodies() const {
-    return std::span(surfaces_).subspan(std::min<std::size_t>(1, surfaces_.size()));
-  }
   /// m, that a box of the cloth holds beyond all places for other cloth.
   double beside_itself() const {
-    return touches_itself_ ? 0.5 * surfaces_[kClothSurface].thickness : 0;
+    return touches_itself() ? 0.5 * surfaces()[kClothSurface].thickness : 0;
   }
-  void add_cloth();
-  void prepare_for_itself();
-  void make_room(const BodyClock& clock, std::size_t points);
-  ContactSurface& surface_for(const BodyClock& clock, std::size_t body, std::size_t place);
+  void make_room();
   bool holds(std::uint32_t point, kernels::Vector place) const;
-  static void take_vertices(ContactSurface& surface, const TravellingBody& body);
   void see_from(ContactSurface& surface, const PoseTravel& travel) const;
   void activate_vertex(std::uint32_t point);
   void forget_active();
@@ -218,17 +143,9 @@ class ContactPoints {
   double tubes_end(double end) const;
   void write_box(std::size_t point, double reach);
 
-  const Model& model_;
-  std::size_t slots_ = 0;
   std::vector<std::uint32_t> particles_;  // slots; the others are padding
-  bool touches_itself_ = false;
-  SewnPoints sewn_;
-  RestDistances rest_;
-  std::vector<ContactSurface> surfaces_;
-  std::vector<SurfacePair> surface_pairs_;
-  std::vector<std::uint16_t> surface_of_;  // per vertex
   kernels::Vector origin_{};
-  double largest_reach_ = 0, largest_thickness_ = 0;
+  double largest_reach_ = 0;
   ContactSpeeds speeds_;
   kernels::Vector drift_{};                                     // m, of all in the interval
   double largest_way_ = 0, way_of_bodies_ = 0, travelled_ = 0;  // m, beside that
@@ -243,17 +160,13 @@ class ContactPoints {
   double from_ = 0, to_ = 0, until_ = 0;  // shares of the step: of the interval, and to its end
   double laid_from_ = 0;                  // likewise: when tubes were laid
   double time_left_ = 0;                  // s, until the step ends
-  std::vector<double> shortest_;          // m, per slot: of its edges, of cloth that touches itself
   std::uint32_t layings_ = 0;
   SparseArray<std::uint32_t> laid_;  // per vertex: in which its tube was made
   std::uint32_t placings_ = 0;
   SparseArray<std::uint32_t> placed_;    // per vertex: ContactSurface::placing when it was placed
   std::vector<std::uint32_t> active_;    // vertices
   SparseArray<std::uint8_t> is_active_;  // per vertex
-  SparseArray<float> start_quads_, way_quads_, place_quads_;
-  std::vector<std::uint32_t> asked_;
-  bool are_placed_ = false;  // those of bodies that stand still, too
-  SparseArray<ContactParticle> present_;
+  SparseArray<float> start_quads_, way_quads_;
 };
 
 template <class Moved>

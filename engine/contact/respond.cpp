@@ -81,12 +81,12 @@ void Response::begin(const ContactScene& scene, const Near& near) {
       }
     }
   }
-  scene.points.ask_for(asked_);
+  scene.present.begin_interval(asked_);
   first_link_.resize(scene.model.slots(), kNoIndex);
 }
 
-void Response::advance(const BodyClock& clock, ContactPoints& points, Near& near) {
-  points.place_vertices_asked(clock);
+void Response::advance(const ContactScene& scene, Near& near) {
+  scene.present.place_vertices(scene.clock);
   for (NearPairs& pairs : near) {
     for (NearState& state : pairs.states) {
       state.is_touching = state.is_linked = false;
@@ -102,14 +102,14 @@ void Response::advance(const BodyClock& clock, ContactPoints& points, Near& near
 simd::PairTouch Response::touch_of(const ContactScene& scene, NearPairs& near,
                                    std::vector<std::uint16_t>& touching) const {
   return {.pairs = near.list.blocks.data(),
-          .points = scene.points.places(),
+          .points = scene.present.places(),
           .rounding = kRoundings * scene.points.rounding(),
           .sides = near.sides.data(),
           .touching = touching.data()};
 }
 
 void Response::find_touching(const ContactScene& scene, Near& near, Team& team) {
-  scene.points.read_cloth(scene.particles);
+  scene.present.read_cloth(scene.particles);
   for (std::size_t list = 0; list < kBodyLists; ++list) {
     NearPairs& pairs = near[list];
     const simd::PairTouch touch = touch_of(scene, pairs, touching_[list]);
@@ -145,13 +145,13 @@ Vector speed_of_arm(const ContactScene& scene, const Encounter& e, const Pair& p
 Vector relative_velocity(const ContactScene& scene, const Encounter& e, const Pair& pair) {
   Vector relative = -pair.outward() * speed_of_arm(scene, e, pair);
   for (std::size_t k = 0; k < 4; ++k)
-    relative = relative + e.nearest.weight[k] * scene.points.present(e.points[k]).v;
+    relative = relative + e.nearest.weight[k] * scene.present[e.points[k]].v;
   return relative;
 }
 
 /// As it was last read.
-void read_start(const ContactPoints& points, Encounter& e) {
-  for (std::size_t k = 0; k < 4; ++k) e.start[k] = points.present(e.points[k]).start;
+void read_start(const PresentPoints& present, Encounter& e) {
+  for (std::size_t k = 0; k < 4; ++k) e.start[k] = present[e.points[k]].start;
 }
 
 }  // namespace
@@ -161,7 +161,7 @@ Encounter Response::meet(const ContactScene& scene, const NearPairs& near, std::
   const Pair& pair = near.list.pairs[i];
   Encounter e;
   e.points = near.list.points(i);
-  for (std::size_t k = 0; k < 4; ++k) e.x[k] = scene.points.present(e.points[k]).x;
+  for (std::size_t k = 0; k < 4; ++k) e.x[k] = scene.present[e.points[k]].x;
   e.nearest = nearest(pair.kind, e.x);
   const ContactSurface& later = scene.points.later(pair);
   const double radius = later.radius_at(e.points, e.nearest.weight);
@@ -170,7 +170,7 @@ Encounter Response::meet(const ContactScene& scene, const NearPairs& near, std::
   const double l = length(e.nearest.r);
   const Vector direct = l > kTouching ? (1 / l) * e.nearest.r : side;
   if (!(dot(e.nearest.r, side) > 0)) {
-    read_start(scene.points, e);
+    read_start(scene.present, e);
     e.is_under = is_now_under(pair.kind, e, e.nearest.r, side, near.is_under(i), thickness);
   }
   e.normal = e.is_under ? -1.0 * direct : direct;
@@ -191,7 +191,7 @@ bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i)
   near.set_under(i, e.is_under);
   near.set_normal(i, e.normal);
   if (!e.pushes) return false;
-  read_start(scene.points, e);
+  read_start(scene.present, e);
   if (!(weight_of(scene, e) > 0)) return false;
   Vector slip = -pair.outward() * turn_of_arm(scene, e, pair);
   for (std::size_t k = 0; k < 4; ++k) slip = slip + e.nearest.weight[k] * (e.x[k] - e.start[k]);
@@ -217,7 +217,7 @@ void Response::give_back(const ContactScene& scene, Near& near) const {
       continue;  // by another point
     reference::Grip& grip = near[list].states[i].grip;
     if (!(grip.pushed > 0)) continue;
-    scene.points.read_present(near[list].list.points(i), scene.particles);
+    scene.present.read(near[list].list.points(i), scene.particles);
     const Encounter e = meet(scene, near[list], i);
     const double back = std::min(e.gap + e.yield.by, grip.pushed), weight = weight_of(scene, e);
     if (!(back > 0) || !(weight > 0)) continue;
@@ -232,6 +232,7 @@ void Response::give_back(const ContactScene& scene, Near& near) const {
 }
 
 std::pair<TouchedSurface, Vector> Response::touched_by(const ContactPoints& points,
+                                                       const PresentPoints& present,
                                                        const Near& near, std::uint32_t slot) const {
   std::pair<TouchedSurface, Vector> touched;
   double most = 0;
@@ -245,7 +246,7 @@ std::pair<TouchedSurface, Vector> Response::touched_by(const ContactPoints& poin
     touched.second = pair.outward() * pairs.normal(i);
     touched.first = {.body = points.later(pair).body};
     for (const std::uint32_t point : pairs.list.points(i)) {
-      if (!points.is_of_cloth(point)) touched.first.velocity = points.present(point).v;
+      if (!points.is_of_cloth(point)) touched.first.velocity = present[point].v;
     }
   }
   return touched;
@@ -261,7 +262,7 @@ void Response::push(const ContactScene& scene, const Encounter& e, const Pair& p
   for (std::size_t k = 0; k < 4; ++k) {
     if (scene.points.is_of_cloth(e.points[k])) continue;
     const double outward = pair.outward() * e.nearest.weight[k];
-    surface.velocity = surface.velocity - outward * scene.points.present(e.points[k]).v;
+    surface.velocity = surface.velocity - outward * scene.present[e.points[k]].v;
     on_body = on_body - outward * e.x[k];
   }
   Vector impulse{};
@@ -269,12 +270,12 @@ void Response::push(const ContactScene& scene, const Encounter& e, const Pair& p
     const double share = scene.points.inverse_mass(e.points[k]) * e.nearest.weight[k];
     if (share == 0) continue;
     const double part = share / weight;
-    ContactParticle p = scene.points.present(e.points[k]);
+    ContactParticle p = scene.present[e.points[k]];
     p.start = p.start + (part * stop.comes_out) * e.normal;
     p.x = p.x + part * stop.by;
     p.v = p.v + part * slow.change;
     scene.particles.write(e.points[k], p);
-    scene.points.set_present(e.points[k], scene.particles.read(e.points[k]));
+    scene.present.set(e.points[k], scene.particles.read(e.points[k]));
     scene.particles.touch(e.points[k], surface);
     const double momentum = scene.model.mass[e.points[k]] * scene.particles.momentum_share();
     impulse = impulse + (momentum * part) * slow.change;
@@ -305,8 +306,7 @@ bool Response::hold(const ContactScene& scene, Near& near, std::uint32_t slot) {
   for (std::uint32_t link = slot < first_link_.size() ? first_link_[slot] : kNoIndex;
        link != kNoIndex; link = links_[link].next) {
     visits_ += tuning::kVisitsOfTouch;
-    scene.points.read_present(near[links_[link].list].list.points(links_[link].pair),
-                              scene.particles);
+    scene.present.read(near[links_[link].list].list.points(links_[link].pair), scene.particles);
     is_pushed = resist(scene, near[links_[link].list], links_[link].pair) || is_pushed;
   }
   return is_pushed;

@@ -36,7 +36,7 @@ class Response {
   /// Begins an interval.
   void begin(const ContactScene& scene, const Near& near);
   /// Advances by a substep.
-  void advance(const BodyClock& clock, ContactPoints& points, Near& near);
+  void advance(const ContactScene& scene, Near& near);
   /// Over all pairs. moved(slot, by): by how much (m).
   template <class Moved>
   void sweep(const ContactScene& scene, Near& near, Team& team, Moved&& moved);
@@ -47,6 +47,7 @@ class Response {
   /// The surface that has pushed a particle most in this substep, of all that it touches, and its
   /// normal.
   std::pair<TouchedSurface, kernels::Vector> touched_by(const ContactPoints& points,
+                                                        const PresentPoints& present,
                                                         const Near& near, std::uint32_t slot) const;
   /// Over pairs of the slot that have touched in this substep. Returns whether one was pushed.
   bool hold(const ContactScene& scene, Near& near, std::uint32_t slot);

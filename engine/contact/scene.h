@@ -4,6 +4,7 @@
 #include "engine/contact/impulses.h"
 #include "engine/contact/particles.h"
 #include "engine/contact/points.h"
+#include "engine/contact/present_points.h"
 #include "engine/contact/room.h"
 #include "engine/contact/tangles.h"
 
@@ -13,6 +14,7 @@ struct ContactScene {
   const Model& model;
   const BodyClock& clock;
   ContactPoints& points;
+  PresentPoints& present;
   ContactParticles& particles;
   ContactImpulses& impulses;
   const Tangles& tangles;
@@ -21,7 +23,7 @@ struct ContactScene {
   /// A point in the present substep; a vertex of a body is one that was asked for.
   ContactParticle read(std::uint32_t point) const {
     if (points.is_of_cloth(point)) return particles.read(point);
-    return points.present(point);
+    return present[point];
   }
   /// A particle that the caller moves is as fast as that.
   ContactParticle read_moving(std::uint32_t slot) const {
@@ -32,11 +34,11 @@ struct ContactScene {
   }
   /// Where that is.
   kernels::Vector place(std::uint32_t point) const {
-    return points.is_of_cloth(point) ? particles.position(point) : points.to(point);
+    return points.is_of_cloth(point) ? particles.position(point) : present[point].x;
   }
   /// And where it was when the substep began.
   kernels::Vector start(std::uint32_t point) const {
-    return points.is_of_cloth(point) ? particles.start(point) : points.from(point);
+    return points.is_of_cloth(point) ? particles.start(point) : present[point].start;
   }
   /// The yield of a body to a feature of the cloth, whose points count by their weights.
   reference::Yield yield(const std::array<std::uint32_t, 4>& four,

@@ -130,7 +130,7 @@ Squeeze::Seen Squeeze::see(const ContactScene& scene, const NearPairs& near, std
     if (scene.points.is_of_cloth(seen.points[k])) {
       seen.at = seen.at + weight * seen.x[k];
     } else {
-      const Vector way = scene.points.to(seen.points[k]) - seen.x[k];
+      const Vector way = scene.present[seen.points[k]].x - seen.x[k];
       seen.claim.velocity = seen.claim.velocity + (weight / scene.clock.h()) * way;
     }
   }
