@@ -66,4 +66,16 @@ kernels::Vectors scattered(kernels::Vectors v, double size) {
   return v;
 }
 
+double largest_strain(const BlockOfYarns& b, const kernels::Vectors& x) {
+  double largest = 0;
+  for (std::uint32_t lane = 2; lane < kernels::kLanes; ++lane) {
+    for (std::uint32_t k = 0; k + 1 < BlockOfYarns::length(lane); ++k) {
+      const double l = kernels::length(x[b.slot_of(k, lane)] - x[b.slot_of(k + 1, lane)]);
+      const double rest = static_cast<double>(b.rows[k].rest[lane]);
+      largest = std::max(largest, std::abs(l - rest - b.give(k, lane)) / rest);
+    }
+  }
+  return largest;
+}
+
 }  // namespace weft::test

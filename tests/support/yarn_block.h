@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cstdint>
 #include <iterator>
 #include <vector>
@@ -245,6 +244,8 @@ std::vector<kernels::Vector> solved_densely(const BlockOfYarns& b, std::uint32_t
 Eigen::VectorXd length_errors(const BlockOfYarns& b, std::uint32_t lane);
 /// Where one exact linear solve takes the particles of a lane.
 std::vector<kernels::Vector> solved_densely(const BlockOfYarns& b, std::uint32_t lane);
+/// What is left of the laws at x, the largest, over rest lengths.
+double largest_strain(const BlockOfYarns& b, const kernels::Vectors& x);
 /// Vectors of up to `size`, or beside those given.
 kernels::Vectors scattered(kernels::Vectors v, double size);
 

@@ -4,70 +4,20 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "engine/erase_repeated.h"
 #include "tests/support/bending.h"
+#include "tests/support/changed.h"
 #include "tests/support/clothes.h"
 #include "tests/support/membrane.h"
 #include "tests/support/mesh_scenes.h"
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
-#include "tools/scenes/irregular_mesh.h"
 
 namespace weft::test::engine_step_changes {
 namespace {
 
-/// Every solver on every backend that it has.
-std::vector<Settings> all_solvers() {
-  return {{.solver = Solver::small_steps},
-          {.solver = Solver::small_steps, .scheme = Scheme::implicit},
-          {.solver = Solver::small_steps, .backend = Backend::reference},
-          {.solver = Solver::yarn},
-          {.solver = Solver::direct},
-          {.solver = Solver::direct, .scheme = Scheme::rattle},
-          {.substeps = 1, .solver = Solver::gauss_seidel},
-          {.substeps = 1, .solver = Solver::gauss_seidel, .backend = Backend::reference}};
-}
-std::vector<Settings> small_steps() {
-  return {{.solver = Solver::small_steps},
-          {.solver = Solver::small_steps, .backend = Backend::reference}};
-}
-
-std::string text(const Settings& settings) {
-  return std::string(name(settings.solver)) + " " + std::string(name(settings.scheme)) + " " +
-         std::string(name(settings.backend));
-}
-
-/// With constraints between neighbours in the list of pins.
-SceneDescription with_inert(SceneDescription scene) {
-  for (std::uint32_t j = 0; j + 1 < scene.fixed.size(); ++j) {
-    const std::uint32_t a = scene.fixed[j], b = scene.fixed[j + 1];
-    scene.constraints.push_back({a, b, distance(scene.positions[a], scene.positions[b])});
-  }
-  return scene;
-}
-
-/// The mesh of `cape` in cotton.
-SceneDescription cotton_cape(int size) {
-  const scenes::IrregularMesh mesh = scenes::irregular_mesh(size);
-  MeshDescription description;
-  description.positions = mesh.points;
-  for (const scenes::Face& face : mesh.faces) {
-    description.corners.insert(description.corners.end(), face.begin(), face.end());
-    description.face_sizes.push_back(static_cast<std::uint32_t>(face.size()));
-  }
-  for (const std::uint32_t corner : description.corners) {
-    if (mesh.points[corner].x < 1.19 / (size - 1)) description.pins.push_back(corner);
-  }
-  std::ranges::sort(description.pins);
-  erase_repeated(description.pins);
-  description.material = find_material("cotton").value();
-  const auto made = cloth_from_mesh(description);
-  REQUIRE_MESSAGE(made, made.error());
-  return made.value().scene;
-}
+using namespace changed;
 
 /// Some particles are to stay within 2 cm of where they are.
 SceneDescription with_anchors(SceneDescription scene) {
@@ -253,115 +203,6 @@ TEST_CASE("automatic solvers are chosen anew, by what was asked for at first") {
   CHECK(step(cloth, 0.01).status == Status::converged);
 }
 
-TEST_CASE("a pin that is let go flies on as it was moved, and falls") {
-  SceneDescription scene;
-  scene.positions = {{0, 0, 0}, {5, 0, 0}};
-  scene.masses = {1, 1};
-  scene.fixed = {0, 1};
-  for (const Settings& settings : all_solvers()) {
-    CAPTURE(text(settings));
-    Cloth cloth = cloth_of(scene, settings);
-    for (int k = 1; k <= 3; ++k) {
-      REQUIRE(cloth.move_fixed(0, {0.03 * k, 0, 0}));
-      step(cloth, 0.01);
-    }
-    REQUIRE(cloth.change({.release = {0}}));
-    CHECK(cloth.velocity(0).x == doctest::Approx(3));
-    run(cloth, 0.01, 100);
-    const bool first_order = cloth.settings().scheme == Scheme::implicit;
-    CHECK(cloth.position(0).x == doctest::Approx(3.09));
-    CHECK(cloth.position(0).y == doctest::Approx(-5).epsilon(first_order ? 0.02 : 1e-4));
-    CHECK(cloth.velocity(0).y == doctest::Approx(-10).epsilon(1e-4));
-    CHECK(distance(cloth.position(1), {5, 0, 0}) == 0);
-  }
-}
-
-TEST_CASE("a pin that paused, or whose velocities were written, is let go at rest") {
-  SceneDescription scene = free_bar(1, 1);
-  scene.fixed = {0, 1};
-  for (const bool pauses : {false, true}) {
-    Cloth cloth = cloth_of(scene, {});
-    REQUIRE(cloth.move_fixed(0, {-0.01, 0, 0}));
-    step(cloth, 0.01);
-    if (pauses) step(cloth, 0.01);
-    if (!pauses) REQUIRE(cloth.write_velocities(std::vector<Vec3>(2)));
-    REQUIRE(cloth.change({.release = {0}}));
-    CHECK(length(cloth.velocity(0)) == 0);
-  }
-}
-
-TEST_CASE("moves to come are those of the pins that stay") {
-  SceneDescription scene = free_bar(1, 1);
-  scene.fixed = {0, 1};
-  for (Settings settings : all_solvers()) {
-    CAPTURE(text(settings));
-    settings.tolerance = 1e-5;
-    Cloth cloth = cloth_of(scene, settings);
-    REQUIRE(cloth.move_fixed(0, {-0.01, 0, 0}));
-    REQUIRE(cloth.change({.release = {1}}));
-    step(cloth, 0.01);
-    CHECK(distance(cloth.position(1), {0.99, 0, 0}) < 2e-5);
-  }
-}
-
-TEST_CASE("a sheet whose whole side is let go falls as one, its waking edges kept") {
-  const SceneDescription scene = with_inert(scene_of("hang", 13));
-  for (const Settings& settings : all_solvers()) {
-    CAPTURE(text(settings));
-    Cloth cloth = cloth_of(scene, settings);
-    REQUIRE(describe(*cloth.model()).inert_constraints == 12);
-    run(cloth, 0.01, 30);
-    const Vec3 before = momentum(scene.masses, velocities(cloth));
-    REQUIRE(cloth.change({.release = scene.fixed}));
-    CHECK(describe(*cloth.model()).inert_constraints == 0);
-    CHECK(describe(*cloth.model()).constraints == scene.constraints.size());
-    for (int k = 0; k < 30; ++k) {
-      const StepReport report = step(cloth, 0.01);
-      CHECK(report.status == Status::converged);
-      CHECK(max_strain(with(scene, {.release = scene.fixed}), positions(cloth)) < 0.0101);
-    }
-    const Vec3 gained = momentum(scene.masses, velocities(cloth)) - before;
-    // Its acceleration has a kink, which BDF2 finds half a substep late.
-    CHECK(distance(gained, {0, -3, 0}) < 0.05);
-  }
-}
-
-TEST_CASE("a corner of a hanging sheet is let go, and the other holds") {
-  const SceneDescription scene = scene_of("corners", 17);
-  for (const Settings& settings : all_solvers()) {
-    CAPTURE(text(settings));
-    Cloth cloth = cloth_of(scene, settings);
-    run(cloth, 0.01, 20);
-    REQUIRE(cloth.change({.release = {scene.fixed[1]}}));
-    const Vec3 corner = cloth.position(scene.fixed[1]);
-    for (int k = 0; k < 40; ++k) CHECK(step(cloth, 0.01).status == Status::converged);
-    CHECK(cloth.position(scene.fixed[1]).y < corner.y - 0.3);
-    CHECK(distance(cloth.position(scene.fixed[0]), scene.positions[scene.fixed[0]]) == 0);
-  }
-}
-
-TEST_CASE("what is fixed in flight stops where it is, and holds the rest") {
-  SceneDescription scene = free_bar(1, 1);
-  scene.velocities = {{0, 3, 0}, {0, 3, 0}};
-  scene.gravity = {0, 0, 0};
-  for (const Settings& settings : all_solvers()) {
-    CAPTURE(text(settings));
-    Cloth cloth = cloth_of(scene, settings);
-    run(cloth, 0.01, 10);
-    const Vec3 at = cloth.position(0);
-    REQUIRE(cloth.change({.fix = {0}}));
-    CHECK(distance(cloth.position(0), at) == 0);
-    CHECK(length(cloth.velocity(0)) == 0);
-    CHECK(distance(cloth.velocity(1), {0, 3, 0}) < 1e-3);
-    for (int k = 0; k < 20; ++k) {
-      REQUIRE(step(cloth, 0.01).status == Status::converged);
-      CHECK(distance(cloth.position(0), at) == 0);
-    }
-    const double turned = std::atan2(cloth.position(1).y - at.y, cloth.position(1).x - at.x);
-    CHECK(turned == doctest::Approx(0.6).epsilon(0.05));  // at 3 m/s about a metre
-  }
-}
-
 /// Of one particle on a spring, in the end.
 double stretch_at_rest(Cloth& cloth) {
   run(cloth, 0.01, 300);
@@ -450,37 +291,6 @@ TEST_CASE("from woven rows to quads and back small steps lose a rounding at most
     const double rounding = settings.backend == Backend::simd ? 1e-6 : 0;
     CHECK(largest_distance(positions(changed), positions(cloth)) <= rounding);
     CHECK(largest_distance(positions(written), positions(cloth)) > 1e-5);
-  }
-}
-
-/// Lets go of the first pin after some frames; returns the energy gained since, J.
-double gain_after_release(const SceneDescription& scene, const Settings& settings, int frames) {
-  Cloth cloth = cloth_of(scene, settings);
-  const double before = cloth.energy().total();
-  run(cloth, 1. / 60, frames);
-  CHECK(cloth.energy().total() <= before + 1e-6);
-  REQUIRE(cloth.change({.release = {scene.fixed[0]}}));
-  const double start = cloth.energy().total();
-  double gain = -1e9;
-  for (int k = 0; k < 60; ++k) {
-    const StepReport report = step(cloth, 1. / 60);
-    CHECK(report.status == Status::converged);
-    gain = std::max(gain, cloth.energy().total() - start);
-  }
-  return gain;
-}
-
-TEST_CASE("a pin that is let go under tension gains no energy") {
-  const std::vector<NamedScene> scenes = {{"four_pins", scene_of("four_pins", 31)},
-                                          {"corners", scene_of("corners", 21)},
-                                          {"cape", scene_of("cape", 24)},
-                                          {"cotton", cotton_cape(24)}};
-  for (const NamedScene& scene : scenes) {
-    for (const int frames : {5, 60}) {
-      CAPTURE(scene.name);
-      CAPTURE(frames);
-      CHECK(gain_after_release(scene.scene, {}, frames) < 1e-6);
-    }
   }
 }
 
