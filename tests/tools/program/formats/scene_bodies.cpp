@@ -7,6 +7,7 @@
 #include "tests/tools/scene_texts.h"
 #include "tests/tools/temporary_folder.h"
 #include "tools/program/formats/scene_file.h"
+#include "tools/program/measure/crossings.h"
 #include "tools/scenes/body_moves.h"
 #include "tools/scenes/scenes.h"
 
