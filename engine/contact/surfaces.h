@@ -52,7 +52,7 @@ class ContactSurfaces {
   double shortest_edge(std::uint32_t slot) const { return shortest_[slot]; }
 
   std::size_t slots() const { return slots_; }
-  /// Of all points.
+  /// The number of all points.
   std::size_t count() const { return slots_ + surface_of_.size(); }
   bool is_of_cloth(std::uint32_t point) const { return point < slots_; }
   /// The surface of a vertex of a body.

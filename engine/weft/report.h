@@ -1,4 +1,4 @@
-/// What a step reports: its status, its work, its errors, and all that broke. Part of weft.h.
+/// The report of a step: its status, its work, its errors, and all that broke. Part of weft.h.
 ///
 ///   const weft::StepReport report = cloth.step(1.0 / 60).value();
 ///   if (report.status != weft::Status::converged) std::puts(name(report.status).data());
