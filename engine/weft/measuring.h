@@ -27,12 +27,12 @@ struct Measuring {
   /// how `skip` tracks satisfied constraints: true, by flags of chunks; false, by the 64-bit masks
   /// of the paper.
   bool anticipate = true;
-  /// With gauss_seidel on the simd backend and with `anticipate`: errors of distance constraints, in
-  /// both loops, are kept, and updated through the stored products of neighbouring directions, as in
-  /// section 4.2. Ropes, constraints at hubs and contacts still form theirs from displacements. An
-  /// iteration takes 1.3 to 2 times as long as by displacements, on irregular meshes 3 times
-  /// (perf/tried.md). The reference backend anticipates by products anyway, and refuses this
-  /// setting. Models with springs refuse it, too.
+  /// With gauss_seidel on the simd backend and with `anticipate`: errors of distance constraints,
+  /// in both loops, are kept, and updated through the stored products of neighbouring directions,
+  /// as in section 4.2. Ropes, constraints at hubs and contacts still form theirs from
+  /// displacements. An iteration takes 1.3 to 2 times as long as by displacements, on irregular
+  /// meshes 3 times (perf/tried.md). The reference backend anticipates by products anyway, and
+  /// refuses this setting. Models with springs refuse it, too.
   bool anticipate_products = false;
   bool skip = true;  ///< Section 4.3: satisfied constraints are passed over.
   /// N s, the largest impulse of one correction; 0: no limit. gauss_seidel on the reference backend
