@@ -99,7 +99,7 @@ void Contacts::find(const ContactPoints& points, const NearContacts& near) {
   place_of_.resize(first + near.found.size());
   colour(points, near.found, 0, edges, false);
   colour(points, near.found, edges, near.found.size(), true);
-  active_.resize(blocks_.size());
+  active_.resize(blocks_.size(), 0xffff);  // their multipliers may push
   are_linked_ = false;
 }
 
@@ -235,11 +235,13 @@ void Contacts::set_normal(std::size_t contact, Vector normal) {
   to.z[contact % kLanes] = static_cast<float>(normal.z);
 }
 
-/// Its points are nobody's, and have no mass.
+/// Its points are nobody's, and have no mass. Kernels know it by its thickness.
 void Contacts::leave_free(std::size_t block, std::size_t lane) {
   const auto nobody = static_cast<std::uint32_t>(known_as_.size() + lane);
   for (std::size_t k = 0; k < 4; ++k)
     blocks_[block].point[k][lane] = blocks_[block].beside[k][lane] = nobody;
+  blocks_[block].thickness[lane] = -1;
+  blocks_[block].give[lane] = 0;
 }
 
 }  // namespace weft

@@ -14,6 +14,13 @@ namespace weft {
 using kernels::kLanes;
 using kernels::Vector;
 
+namespace {
+
+constexpr double kAlone = -1;                      // Contacts::moved_by_: no round moves it
+constexpr std::uint16_t kMayAllBeActive = 0xffff;  // Contacts::active_
+
+}  // namespace
+
 void Contacts::begin(const ContactMemory* memory) {
   memory_.clear();
   if (memory != nullptr) memory_ = *memory;
@@ -31,6 +38,7 @@ void Contacts::clear() {
   for (const std::uint32_t slot : beside_) known_as_[slot] = Known::no;
   points_.clear();
   beside_.clear();
+  active_.clear();
   active_blocks_.clear();
   active_colours_.clear();
   is_begun_ = is_aside_ = false;
@@ -93,6 +101,7 @@ void Contacts::begin_substep(const ContactPoints& points, ContactParticles& part
     moves_[4 * slot + 3] = places_[4 * slot + 3];
     is_beside_body_[slot] = particles.is_beside_body(slot) ? 1 : 0;
   }
+  if (is_begun_) std::ranges::fill(active_, kMayAllBeActive);
   const double bh = h / particles.momentum_share(), before = std::exchange(give_, bh * bh);
   const float warm = stands || before == 0 ? 0.f : static_cast<float>(give_ / before);
   const simd::ContactFreeze freeze{
@@ -146,10 +155,16 @@ void Contacts::write_moves(ContactParticles& particles) {
   }
 }
 
-/// Finds the contacts that push; for `touch` also those that are nearer than their targets.
+/// Finds the contacts that push; for `touch` also those that are nearer than their targets. Only
+/// blocks with a contact that was active before have one that pushes.
 void Contacts::find_active(Active which, Team& team) {
+  const bool pushing = which == Active::push;
   team.for_each_share(blocks_.size(), [&](std::size_t first, std::size_t last) {
-    kernels_.find_active(solving(), which == Active::push, active_.data(), first, last);
+    for (std::size_t next = first; first < last; first = next) {
+      const bool are_passed_over = pushing && active_[first] == 0;
+      while (next < last && (pushing && active_[next] == 0) == are_passed_over) ++next;
+      if (!are_passed_over) kernels_.find_active(solving(), pushing, active_.data(), first, next);
+    }
   });
   active_blocks_.clear();
   active_colours_.clear();
@@ -185,20 +200,38 @@ void Contacts::visit_active(Team& team) {
   visits_ += tuning::kVisitsOfLook * active_count_;
 }
 
+/// Rounds leave alone what no active block moves and no body holds. Its place is rounded once, as
+/// lanes round those of the others.
 void Contacts::begin_rounds(ContactParticles& particles, Team& team) {
   if (particles.is_mended()) set_aside();
   read_moves(particles);
-  for (const std::uint32_t slot : points_) moved_by_[slot] = 0;
   find_active(Active::touch, team);
+  for (const std::uint32_t slot : points_)
+    moved_by_[slot] = is_beside_body_[slot] != 0 ? 0 : kAlone;
+  if (active_blocks_.empty()) return;
+  for (const std::uint32_t block : active_blocks_) {
+    for (const auto& of : blocks_[block].point) {
+      for (const std::uint32_t slot : of)
+        if (slot < moved_by_.size()) moved_by_[slot] = 0;
+    }
+  }
+  for (const std::uint32_t slot : points_) {
+    if (moved_by_[slot] == 0 || !(weight(slot) > 0)) continue;
+    const Vector x = particles.position(slot);
+    particles.move_to(slot, from_[slot] + move(slot));
+    const double by = length(particles.position(slot) - x);
+    if (by > 0) moved_by_[slot] = by;
+  }
 }
 
 /// Bodies of a closed form hold what contacts have moved.
 void Contacts::round(ContactParticles& particles, Team& team) {
   if (active_blocks_.empty()) return;
-  read_moves(particles);
+  for (const std::uint32_t slot : points_)
+    if (moved_by_[slot] != kAlone) set_move(slot, particles.position(slot) - from_[slot]);
   visit_active(team);
   for (const std::uint32_t slot : points_) {
-    if (!(weight(slot) > 0)) continue;
+    if (moved_by_[slot] == kAlone || !(weight(slot) > 0)) continue;
     const Vector x = particles.position(slot), to = from_[slot] + move(slot);
     if (is_beside_body_[slot] != 0)
       particles.move_beside_bodies(slot, to);
@@ -218,6 +251,7 @@ void Contacts::set_aside() {
 
 void Contacts::take_back() {
   if (!std::exchange(is_aside_, false)) return;
+  std::ranges::fill(active_, kMayAllBeActive);
   for (std::size_t i = 0; i < keys_.size(); ++i) set_multiplier(i, aside_[i]);
 }
 

@@ -139,6 +139,8 @@ template <bool kEdges>
 [[gnu::always_inline]] inline void freeze_block(const ContactFreeze& f, ContactBlock& block) {
   const Floats none(0.f), one(1.f);
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
+    // Lanes that are not used may say so by a negative thickness.
+    if (bits(load(block.thickness + lane) >= none) == 0) continue;
     const auto place = [&](const std::uint32_t(&of)[kernels::kLanes])
         __attribute__((always_inline)) {
       return weighed(f.places, of + lane);
