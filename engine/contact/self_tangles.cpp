@@ -76,12 +76,38 @@ void SelfTangles::mark_beside(const std::vector<std::uint64_t>& pairs) {
   }
 }
 
+namespace {
+
+/// Boxes around all triangles, and so wide that those which do not meet are apart. The tree's hold
+/// what triangles may come to until the step ends.
+template <class At>
+std::vector<Box> boxes_around(const ContactPoints& points, At&& at) {
+  const double beyond = tuning::kStaysApart + static_cast<double>(points.rounding_of_cloth());
+  const Vector wide{beyond, beyond, beyond};
+  std::vector<Box> boxes;
+  boxes.reserve(points.cloth().triangles.size());
+  for (const TriangleSurface::Triangle& triangle : points.cloth().triangles) {
+    Box box = Box::none();
+    for (const std::uint32_t corner : triangle) {
+      const Vector x = at(corner) - points.origin();
+      box.add(Box::at(x - wide));
+      box.add(Box::at(x + wide));
+    }
+    boxes.push_back(box);
+  }
+  return boxes;
+}
+
+}  // namespace
+
 template <class At>
 void SelfTangles::find(const ContactPoints& points, bool everywhere, At&& at) {
   crossing_.clear();
   const ContactSurface& cloth = points.surfaces()[kClothSurface];
   const SewnPoints& sewn = points.sewn();
+  const std::vector<Box> boxes = boxes_around(points, at);
   BoxTree::meet_itself(table_, cloth.tree(), [&](std::uint32_t a, std::uint32_t b) {
+    if (!boxes[a].meets(boxes[b])) return;
     if (cloth_->is_point(a) || cloth_->is_point(b)) return;
     const bool are_faces = cloth_->is_face(a) && cloth_->is_face(b);
     if (!cloth_->is_face(a) && !cloth_->is_face(b)) return;
