@@ -60,6 +60,24 @@ const uint32_t* weft_surface_triangles(const weft_surface* surface) {
   });
 }
 
+weft_result weft_follow(weft_surface* surface, const weft_cloth* cloth, int* changes) {
+  return call([&]() -> weft::Result<void> {
+    if (auto r = given({{"surface", surface}, {"cloth", cloth}}); !r) return r;
+    const auto followed = surface->surface.follow(cloth->cloth);
+    if (!followed) return weft::Error{followed.error()};
+    if (changes != nullptr) *changes = followed.value();
+    return {};
+  });
+}
+
+size_t weft_surface_split_count(const weft_surface* surface) {
+  return ask("surface", surface, [&] { return surface->surface.split_from().size(); });
+}
+
+const uint32_t* weft_surface_split_from(const weft_surface* surface) {
+  return ask("surface", surface, [&] { return surface->surface.split_from().data(); });
+}
+
 weft_result weft_read_vertices(weft_surface* surface, const weft_cloth* cloth,
                                weft_float_vectors positions, weft_float_vectors normals,
                                const double origin[3]) {

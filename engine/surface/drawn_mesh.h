@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace weft::surface {
@@ -27,12 +28,17 @@ struct DrawnMesh {
   std::vector<DrawnVertex> vertices;
   std::vector<Triangle> triangles;  ///< corners are vertices
   PointFaces faces;
+  std::vector<std::uint32_t> of_triangles;  ///< per triangle of `faces`: that of `triangles`
+  std::vector<std::uint32_t> of_quads;      ///< likewise, the first of two
+  std::vector<std::uint32_t> part;          ///< per triangle; empty without parts
   std::size_t bytes() const;
 };
 
-/// point_of_vertex: of all corners of faces there is one.
-DrawnMesh drawn_mesh(const MeshDescription& mesh,
-                     const std::vector<std::uint32_t>& point_of_vertex);
+/// point_of_vertex: of all corners of faces there is one. parts: the triangles of a cloth that may
+/// tear, with points as corners. If there are any, the mesh is drawn by them: four-sided faces are
+/// cut as they are, and parts that fit no face come after those that do.
+DrawnMesh drawn_mesh(const MeshDescription& mesh, const std::vector<std::uint32_t>& point_of_vertex,
+                     std::span<const Triangle> parts = {});
 /// The triangles of the mesh with points as corners.
 std::vector<Triangle> point_triangles(const DrawnMesh& drawn);
 

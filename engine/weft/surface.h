@@ -14,6 +14,8 @@
 ///   auto near = weft::map_surface(far_mesh, far_made, near_mesh);     // a level of detail
 ///   near.value().copy_shape(far_cloth, near_cloth);                   // near_cloth goes on there
 ///
+///   if (skirt.value().follow(cloth).value()) { ... }              // it tears: larger buffers
+///
 /// The buffers are the caller's. Errors are one line, and then nothing is written. This header
 /// includes mesh.h; weft.h does not include it.
 #pragma once
@@ -40,12 +42,27 @@ class WEFT_API Surface {
   ~Surface();
   Surface clone() const;
 
-  std::size_t vertex_count() const;    ///< of the mesh
+  std::size_t vertex_count() const;    ///< of the mesh, and those that tears have added
   std::size_t particle_count() const;  ///< of the cloths that it reads
   /// Triangles for an index buffer: the faces of the mesh, in their order and as they are wound.
   /// Four-sided faces are cut along the diagonal that is shorter at the beginning; faces of more
-  /// corners are cut around the first corner.
+  /// corners are cut around the first corner. Faces of cloth that may tear are cut as its fabric
+  /// is (SceneDescription::surface), and those that have to be cut across others come last.
   std::span<const std::array<std::uint32_t, 3>> triangles() const;
+
+  /// Takes on the tears of a cloth, after a step with StepReport::torn: where a sheet is split,
+  /// vertices along the tear become several, and triangles() has the new ones. A mapped mesh splits
+  /// along its own edges that are next to the tear. Returns whether vertex_count() and triangles()
+  /// differ from those before. A cloth that has not torn gives the surface as it was made, so one
+  /// surface may follow several cloths in turns. Nothing is done, and at no cost, where the cloth
+  /// has not torn since.
+  ///
+  /// On a cloth that tears, something must have a strength in MeshCloth::scene when the surface is
+  /// made. The reads refuse a cloth whose tears are not followed.
+  Result<bool> follow(const Cloth& from);
+  /// For each vertex behind those of the mesh: the vertex of the mesh that it was split from, whose
+  /// texture coordinates it has. The next tear may number them otherwise.
+  std::span<const std::uint32_t> split_from() const;
 
   /// Writes one position (m, relative to the origin, as Cloth::read_positions) and one normal per
   /// vertex. Either buffer may be left out: {}. Nothing is allocated. The buffers are only written,
@@ -75,7 +92,8 @@ class WEFT_API Surface {
   /// where the coarse cloth is folded between its vertices; Settings::max_iterations bounds it. (A
   /// skirt of 1,800 particles from one of 288 took 12 ms with a max_iterations of 60 and 1.8 s with
   /// the default, each within 1 %.) Fixed particles move as all others do: place_fixed() puts them
-  /// where they belong. `to` keeps its bodies, anchors, forces and gravity.
+  /// where they belong. `to` keeps its bodies, anchors, forces and gravity. A cloth that is split
+  /// by a tear has no shape for another one, and is refused.
   Result<void> copy_shape(const Cloth& from, Cloth& to);
 
   std::size_t bytes() const;  ///< held by this surface, with the data that clones share

@@ -92,6 +92,10 @@ WEFT_API size_t weft_surface_vertex_count(const weft_surface* surface);
 WEFT_API size_t weft_surface_particle_count(const weft_surface* surface);
 WEFT_API size_t weft_surface_triangle_count(const weft_surface* surface);
 WEFT_API const uint32_t* weft_surface_triangles(const weft_surface* surface); /* 3 each */
+/* changes, which may be NULL: 1 where the counts and the triangles differ from those before */
+WEFT_API weft_result weft_follow(weft_surface* surface, const weft_cloth* cloth, int* changes);
+WEFT_API size_t weft_surface_split_count(const weft_surface* surface);
+WEFT_API const uint32_t* weft_surface_split_from(const weft_surface* surface);
 /* positions or normals may have no floats: NULL and 0. origin: or NULL: 0. */
 WEFT_API weft_result weft_read_vertices(weft_surface* surface, const weft_cloth* cloth,
                                         weft_float_vectors positions, weft_float_vectors normals,

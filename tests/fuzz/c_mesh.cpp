@@ -22,6 +22,7 @@ Owned<weft_cloth> cloth_of(const weft_mesh_cloth* made_of) {
 }
 
 void draw(weft_surface* surface, const weft_cloth* cloth) {
+  done(weft_follow(surface, cloth, nullptr));
   const std::size_t vertices = weft_surface_vertex_count(surface);
   std::vector<float> positions(3 * vertices), normals(3 * vertices);
   done(weft_read_vertices(surface, cloth, {positions.data(), positions.size(), 3},

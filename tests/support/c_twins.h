@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "engine/c_interface/scene_arrays.h"
@@ -138,11 +139,13 @@ struct CottonSheet {
   MeshCloth made_in_cpp;
   Owned<weft_mesh_cloth> made_in_c;
 
-  CottonSheet() {
+  explicit CottonSheet(double strength = std::numeric_limits<double>::infinity()) {
     mesh.material = find_material("cotton").value();
     mesh.material->friction = 0.45;
+    mesh.material->strength = strength;
     REQUIRE(weft_find_material("cotton", &c_material) == WEFT_OK);
     c_material.friction = 0.45;
+    c_material.strength = strength;
     c_mesh.material = &c_material;
     made_in_cpp = cloth_from_mesh(mesh).value();
     made_in_c = made<weft_mesh_cloth>(

@@ -10,11 +10,17 @@ namespace weft::python {
 
 namespace {
 
-py::array triangles_of(const py::object& self) {
-  const auto triangles = self.cast<const HeldSurface&>().value.triangles();
+py::array triangles_of(const HeldSurface& held) {
+  const auto triangles = held.value.triangles();
   return read_only(
       py::array_t<std::uint32_t>({static_cast<py::ssize_t>(triangles.size()), py::ssize_t{3}},
-                                 reinterpret_cast<const std::uint32_t*>(triangles.data()), self));
+                                 reinterpret_cast<const std::uint32_t*>(triangles.data())));
+}
+
+py::array split_from(const HeldSurface& held) {
+  const auto vertices = held.value.split_from();
+  return read_only(
+      py::array_t<std::uint32_t>(static_cast<py::ssize_t>(vertices.size()), vertices.data()));
 }
 
 py::array new_floats(std::size_t count) {
@@ -54,8 +60,19 @@ void add_surface(py::module_& m) {
       .def(
           "particle_count", [](const HeldSurface& s) { return s.value.particle_count(); },
           "of the cloths that it reads")
-      .def("triangles", &triangles_of,
-           "An array (n, 3) of vertices: a view, which keeps the surface alive.")
+      .def("triangles", &triangles_of, "An array (n, 3) of vertices.")
+      .def(
+          "follow",
+          [](HeldSurface& s, const HeldCloth& from) {
+            const auto used = use(s);
+            const auto read = use(from);
+            return value_of(s.value.follow(from.value));
+          },
+          py::arg("cloth"),
+          "Takes on the tears of a cloth: vertices and triangles grow. Returns whether they "
+          "differ.")
+      .def("split_from", &split_from,
+           "For each vertex behind those of the mesh: the one that it was split from.")
       .def("read_vertices", &read_vertices, py::arg("cloth"), py::arg("positions") = py::none(),
            py::arg("normals") = py::none(), py::arg("origin") = Vec3{},
            "Fills positions and normals, arrays (vertices, 3) of float32 whose rows may be apart, "

@@ -3,7 +3,9 @@
 #include <weft/report_fields.h>
 #include <weft/surface.h>
 
+#include <algorithm>
 #include <cstring>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -209,6 +211,36 @@ TEST_CASE("shapes of every kind") {
     REQUIRE(weft_place_body_vertices(b.c.get(), id, 4, numbers(corners)) == WEFT_OK);
     step_both(b, 1. / 60);
   }
+}
+
+TEST_CASE("surfaces that follow tears are the same") {
+  CottonSheet cotton(0.3);
+  auto surface = surface_of_mesh(cotton.mesh, cotton.made_in_cpp).value();
+  const auto c_surface = made<weft_surface>([&](weft_surface** out) {
+    return weft_surface_of_mesh(&cotton.c_mesh, cotton.made_in_c.get(), out);
+  });
+  Both b = cotton.cloths();
+  int changes = 0;
+  for (int i = 0; i < 60; ++i) {
+    step_both(b, 1. / 60);
+    int changes_in_c = 2;
+    REQUIRE(weft_follow(c_surface.get(), b.c.get(), &changes_in_c) == WEFT_OK);
+    const auto follows = surface.follow(b.cpp);
+    REQUIRE(follows);
+    CHECK(changes_in_c == follows.value());
+    changes += changes_in_c;
+    REQUIRE(weft_surface_vertex_count(c_surface.get()) == surface.vertex_count());
+    REQUIRE(weft_surface_split_count(c_surface.get()) == surface.split_from().size());
+    CHECK(std::ranges::equal(
+        std::span(weft_surface_split_from(c_surface.get()), surface.split_from().size()),
+        surface.split_from()));
+    std::vector<float> in_c(3 * surface.vertex_count()), in_cpp(in_c);
+    REQUIRE(weft_read_vertices(c_surface.get(), b.c.get(), {in_c.data(), in_c.size(), 3}, {},
+                               nullptr) == WEFT_OK);
+    REQUIRE(surface.read_vertices(b.cpp, {in_cpp}));
+    CHECK(in_c == in_cpp);
+  }
+  CHECK(changes > 0);
 }
 
 }  // namespace

@@ -57,5 +57,35 @@ TEST_CASE(
   CHECK(failed == 0);
 }
 
+TEST_CASE("reading cloth that has torn allocates nothing") {
+  MeshDescription mesh = sheet_of(6);
+  mesh.pins = {0, 1, 2, 3, 4, 5, 6, 42, 43, 44, 45, 46, 47, 48};
+  mesh.material = {.density = 0.5, .warp = 200, .weft = 200, .shear = 20};
+  mesh.material->strength = 4;
+  const MeshCloth made = cloth_from_mesh(mesh).value();
+  Cloth cloth = cloth_of(made.scene, {});
+  Surface direct = surface_of_mesh(mesh, made).value();
+  Surface mapped = map_surface(mesh, made, sheet_of(10)).value();
+  for (double x = 1; cloth.particle_count() == made.scene.positions.size(); x += 1e-3) {
+    for (std::size_t i = 7; i < 14; ++i)
+      REQUIRE(cloth.move_fixed(mesh.pins[i], {x, mesh.positions[mesh.pins[i]].y, 0}));
+    REQUIRE(cloth.step(1.0 / 60));
+    REQUIRE(x < 2);
+  }
+  REQUIRE(direct.follow(cloth).value());
+  REQUIRE(mapped.follow(cloth).value());
+  std::vector<float> coarse(6 * direct.vertex_count()), fine(6 * mapped.vertex_count());
+  const auto read = [&](Surface& surface, std::vector<float>& floats) {
+    const FloatVectors normals{std::span(floats).subspan(3), 6};
+    return surface.follow(cloth) && surface.read_vertices(cloth, {floats, 6}, normals);
+  };
+  const auto frame = [&] { return read(direct, coarse) && read(mapped, fine); };
+  REQUIRE(frame());
+  const std::size_t before = allocations();
+  const bool is_read = frame();
+  CHECK(allocations() == before);
+  CHECK(is_read);
+}
+
 }  // namespace
 }  // namespace weft::test::engine_surface_surface_allocation
