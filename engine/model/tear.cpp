@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <ranges>
 #include <tuple>
 #include <utility>
 
@@ -40,12 +41,17 @@ class Tearing {
     }
     return false;
   }
+  /// Its flanks are apart (engine/step/flanks.h).
+  void forget_seam(std::uint32_t seam) {
+    description_.seams.erase(description_.seams.begin() + seam);
+    forgets_ = true;
+  }
   TornModel result() && {
-    if (torn_.empty()) return {};
+    if (torn_.empty() && !forgets_) return {};
     let_gas_out(description_.pressures, description_.surface);
     auto other = std::make_shared<Model>(description_, &model_);
     other->split_from = std::move(split_from_);
-    ++other->tears;
+    other->tears += !torn_.empty();
     return {std::move(other), std::move(torn_)};
   }
 
@@ -77,15 +83,18 @@ class Tearing {
   std::vector<Vector> x_;
   std::vector<std::uint32_t> split_from_;
   std::vector<Torn> torn_;
+  bool forgets_ = false;
 };
 
 }  // namespace
 
 TornModel torn_model(const Model& model, std::span<const std::vector<Break>> groups,
-                     const kernels::Vectors& x) {
+                     std::span<const std::uint32_t> without, const kernels::Vectors& x) {
   Tearing tearing(model, x);
   for (const std::vector<Break>& group : groups)
     std::ignore = std::ranges::any_of(group, [&](const Break& it) { return tearing.apply(it); });
+  std::ranges::for_each(without | std::views::reverse,
+                        [&](std::uint32_t seam) { tearing.forget_seam(seam); });
   return std::move(tearing).result();
 }
 

@@ -24,14 +24,15 @@ struct Break {
 };
 
 struct TornModel {
-  std::shared_ptr<const Model> model;
-  std::vector<Torn> torn;  // all that broke
+  std::shared_ptr<const Model> model;  // null: nothing changes
+  std::vector<Torn> torn;              // all that broke
 };
 
 /// In each group the first that can break does. A sheet cannot be split at each particle. A
 /// constraint along an edge of a sheet breaks by a split of one of its ends, if one can be split.
-/// x: of the particles, by slots.
+/// x: of the particles, by slots. without: numbers of seams, ascending, that the cloth goes on
+/// without.
 TornModel torn_model(const Model& model, std::span<const std::vector<Break>> groups,
-                     const kernels::Vectors& x);
+                     std::span<const std::uint32_t> without, const kernels::Vectors& x);
 
 }  // namespace weft

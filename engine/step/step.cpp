@@ -9,6 +9,7 @@
 #include "engine/parallel/team.h"
 #include "engine/step/air.h"
 #include "engine/step/exact_substep.h"
+#include "engine/step/flanks.h"
 #include "engine/step/frame_plan.h"
 #include "engine/step/held_apart.h"
 #include "engine/step/plan.h"
@@ -367,7 +368,8 @@ StepReport step(State& s, double dt, Team& team) {
   StepReport report;
   timed(report, Stage::commit, [&] {
     advance(s, dt, report, team);
-    if (s.model->may_tear && committed(report.status)) tear_what_breaks(s, report);
+    if ((s.model->may_tear || has_flanks(*s.model)) && committed(report.status))
+      tear_what_breaks(s, report);
   });
   return report;
 }

@@ -14,6 +14,7 @@
 #include "engine/model/tear.h"
 #include "engine/partition.h"
 #include "engine/solvers/small_steps/small_steps.h"
+#include "engine/step/flanks.h"
 
 namespace weft {
 namespace tearing {
@@ -258,12 +259,13 @@ void go_on_torn(State& s, TornModel&& torn) {
 }  // namespace tearing
 
 bool tear(State& s) {
+  const std::vector<std::uint32_t> apart = flanks_apart(s);
   tearing::Overloads overloads(s);
-  if (!overloads.any()) return false;
-  TornModel torn = torn_model(*s.model, overloads.groups(), s.position);
-  if (torn.torn.empty()) return false;
+  if (!overloads.any() && apart.empty()) return false;
+  TornModel torn = torn_model(*s.model, overloads.groups(), apart, s.position);
+  if (torn.model == nullptr) return false;
   tearing::go_on_torn(s, std::move(torn));
-  return true;
+  return !s.torn.empty();
 }
 
 }  // namespace weft

@@ -5,8 +5,9 @@
 
 namespace weft {
 
-/// After a step that was committed. Breaks what carries more than its strength: the state then has
-/// a model of its own, and State::torn tells. Returns whether anything broke.
+/// After a step that was committed. Breaks what carries more than its strength, and lets flanks
+/// that are apart (flanks.h) touch each other: the state then has a model of its own, and
+/// State::torn tells. Returns whether anything broke.
 bool tear(State& state);
 
 }  // namespace weft

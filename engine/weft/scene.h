@@ -57,8 +57,8 @@ struct Constraint {
 /// then, since that relieves the others: a crack grows by one edge in each step.
 ///
 /// constraint: its strength becomes 0. So a rope or a thread parts.
-/// seam: its strength becomes 0, and its particles are free of each other. Their faces and edges
-///   still touch nothing of each other (SelfContact).
+/// seam: its strength becomes 0. Faces and edges at its particles touch nothing of each other until
+///   they are apart (SelfContact). Then it is gone, unless a seam that is not broken follows it.
 /// anchor: its particle is let go, as by Cloth::limit_anchor with an infinite distance.
 /// sheet: one of its particles becomes two, each with the triangles, constraints and the mass of
 ///   its side. The crack runs along edges of `surface`, as nearly across the largest tension as

@@ -1,0 +1,20 @@
+/// The flanks of a tear: what is at a particle that was split, and at the one that it gave off.
+///
+/// Both lie in one place when a sheet is split, on no side of each other. So a broken seam joins
+/// them, and they touch nothing of each other, until they have come apart by the thickness and do
+/// not cross. From then on they are two borders of the cloth, as others are.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/step/state.h"
+
+namespace weft {
+
+/// Whether the cloth touches itself and has flanks that are still joined.
+bool has_flanks(const Model& model);
+/// The broken seams of flanks that are apart now, in ascending order.
+std::vector<std::uint32_t> flanks_apart(const State& state);
+
+}  // namespace weft
