@@ -28,12 +28,19 @@ Result<void> GrowingRest::grow(Cloth& cloth, double time) {
   const double now = scale_at(scale_, time);
   const double before = std::exchange(last_, now);
   if (before == now) return {};
-  if (const auto model = cloth.model(); model->tears != tears_) {
-    scene_ = description_of(*model);
-    scale_of_scene_ = before;
-    tears_ = model->tears;
-  }
+  if (cloth.model()->tears != tears_) take_scene(cloth, before);
   return cloth.set_rest_shape(scene_, now / scale_of_scene_);
+}
+
+void GrowingRest::go_on_torn(const Cloth& cloth, double time) {
+  last_ = scale_at(scale_, time);
+  if (!scale_.times.empty()) take_scene(cloth, last_);
+}
+
+void GrowingRest::take_scene(const Cloth& cloth, double scale) {
+  scene_ = description_of(*cloth.model());
+  scale_of_scene_ = scale;
+  tears_ = cloth.model()->tears;
 }
 
 RestScale present_scale(const RestScale& scale, double elapsed) {

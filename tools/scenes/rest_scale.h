@@ -23,9 +23,13 @@ class GrowingRest {
   GrowingRest(const RestScale& scale, const Cloth& cloth);
   /// Gives the cloth its shape of `time`, unless it has that already.
   Result<void> grow(Cloth& cloth, double time);
+  /// The cloth has torn, and has its shape of `time`.
+  void go_on_torn(const Cloth& cloth, double time);
   bool has_grown() const { return last_ != 1; }
 
  private:
+  void take_scene(const Cloth& cloth, double scale);
+
   RestScale scale_;
   SceneDescription scene_;
   double scale_of_scene_ = 1;  // that its shape at rest has

@@ -44,7 +44,8 @@ Result<RunState> state_of(const RunOptions& options, const RunPlan& plan) {
   const auto refused = [&](const std::string& why) {
     return Error{fmt::format("--resume: '{}' {}", *options.resume, why)};
   };
-  const auto& [frame, dt, cloth] = state.value();
+  const int frame = state.value().frame;
+  const double dt = state.value().dt;
   if (dt != plan.dt)
     return refused(fmt::format("is of frames of {} s, and --dt is {}", dt, plan.dt));
   if (frame >= plan.steps)
@@ -148,7 +149,7 @@ Result<Prepared> prepare(const RunOptions& options) {
     prepared.json = std::move(json.value());
   }
   if (options.save) {
-    auto state = StateFile::open(*options.save, prepared.plan.dt);
+    auto state = StateFile::open(*options.save, prepared.plan.dt, *prepared.model);
     if (!state) return Error{fmt::format("--save: {}", state.error())};
     prepared.state = std::move(state.value());
   }

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "engine/model/model.h"
+#include "engine/model/saved_model.h"
 #include "engine/saving/archive.h"
 #include "engine/saving/sealed.h"
 #include "tools/program/files/pending_file.h"
@@ -18,11 +20,11 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kBetween{1};
 /// The version changes with the fields below.
-constexpr Kind kRun{{'w', 'e', 'f', 't', ' ', 'r', 'u', 'n'}, "state of a run", 1};
+constexpr Kind kRun{{'w', 'e', 'f', 't', ' ', 'r', 'u', 'n'}, "state of a run", 2};
 
 void visit_fields(Is<RunState> auto& state, auto& archive) {
-  auto& [frame, dt, cloth] = state;
-  archive(frame, dt, cloth);
+  auto& [frame, dt, cloth, scene, tears, torn] = state;
+  archive(frame, dt, cloth, scene, tears, torn);
 }
 
 }  // namespace
@@ -51,12 +53,12 @@ Result<RunState> read_run_state(const std::string& path) {
   return state;
 }
 
-StateFile::StateFile(std::string path, double dt)
-    : path_(std::move(path)), dt_(dt), last_(Clock::now()) {}
+StateFile::StateFile(std::string path, double dt, const Model& scene)
+    : path_(std::move(path)), dt_(dt), scene_(fingerprint(scene)), last_(Clock::now()) {}
 
-Result<StateFile> StateFile::open(const std::string& path, double dt) {
+Result<StateFile> StateFile::open(const std::string& path, double dt, const Model& scene) {
   if (auto file = PendingFile::open(path); !file) return Error{file.error()};
-  return StateFile(path, dt);
+  return StateFile(path, dt, scene);
 }
 
 void StateFile::add_frame(const Cloth& cloth, int frame) {
@@ -67,7 +69,12 @@ void StateFile::add_frame(const Cloth& cloth, int frame) {
 
 void StateFile::add_last(const Cloth& cloth, int frame) {
   if (!written_) return;
-  const std::vector<std::byte> bytes = bytes_of({frame, dt_, cloth.save_state()});
+  RunState state{.frame = frame, .dt = dt_, .cloth = cloth.save_state(), .scene = scene_};
+  if (const auto model = cloth.model(); model->tears > 0) {
+    state.tears = model->tears;
+    state.torn = save_model(*model);
+  }
+  const std::vector<std::byte> bytes = bytes_of(state);
   written_ = write_file(path_, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

@@ -10,7 +10,10 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include "engine/model/model.h"
+#include "engine/model/saved_model.h"
 #include "engine/model/threads.h"
+#include "engine/validation.h"
 #include "tools/program/measure/cpu_time.h"
 #include "tools/program/run/frame_calls.h"
 #include "tools/program/run/step_total.h"
@@ -158,6 +161,39 @@ Result<void> begin_scene(const RunPlan& plan, const MovedAnchors& anchors, Event
   return pins.place(cloth);
 }
 
+/// That of the state, whose cloth has torn. model: that of the scene.
+Result<Cloth> torn_cloth(const RunState& state, const Model& model, const Settings& settings) {
+  if (state.scene != fingerprint(model)) return Error{"state: is of another model (torn)"};
+  const auto loaded = load_model(state.torn);
+  if (!loaded) return Error{loaded.error()};
+  auto torn = std::make_shared<Model>(*loaded.value());
+  torn->tears = state.tears;
+  return Cloth::create(std::move(torn), settings);
+}
+
+/// The bodies are those that were added, where they had come to.
+Result<void> go_on(const RunPlan& plan, const Model& model, const Settings& settings,
+                   Events& events, GrowingRest& rest, MovedPins& pins, Cloth& cloth) {
+  const RunState& state = *plan.resume;
+  auto happened = events.happen((state.frame - 1) * plan.dt, cloth, pins);  // for its model
+  if (!happened) return happened;
+  const double time = state.frame * plan.dt;
+  Result<void> loaded;
+  if (state.torn.empty()) {
+    if (auto grown = rest.grow(cloth, time); !grown) return grown;
+    loaded = cloth.load_state(state.cloth);
+  } else if (auto torn = torn_cloth(state, model, settings); !torn) {
+    loaded = Error{torn.error()};
+  } else if (loaded = torn.value().load_state(state.cloth); loaded) {
+    cloth = std::move(torn).value();
+    rest.go_on_torn(cloth, time);
+  }
+  if (loaded) return {};
+  return Error{fmt::format(
+      "--resume: {}; a run goes on with the mesh, the material and the wind that it began with",
+      loaded.error())};
+}
+
 Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Settings& settings,
                             const RunPlan& plan, const FrameCallback& on_frame) {
   auto created = Cloth::create(model, settings);
@@ -174,17 +210,9 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
   if (!bodies) return Error{bodies.error()};
   RunSummary summary;
   Errors errors;
-  if (plan.resume) {  // whose bodies are those that were added, where they had come to
-    const double last_begin = (plan.resume->frame - 1) * plan.dt;
-    if (auto happened = events.happen(last_begin, cloth, pins); !happened)  // for its model
-      return Error{happened.error()};
-    if (auto grown = rest.grow(cloth, plan.resume->frame * plan.dt); !grown)
-      return Error{grown.error()};
-    if (auto loaded = cloth.load_state(plan.resume->cloth); !loaded) {
-      return Error{fmt::format(
-          "--resume: {}; a run goes on with the mesh, the material and the wind that it began with",
-          loaded.error())};
-    }
+  if (plan.resume) {
+    auto gone_on = go_on(plan, *model, settings, events, rest, pins, cloth);
+    if (!gone_on) return Error{gone_on.error()};
     summary.resumed_at = plan.resume->frame;
   }
   if (auto begun = begin_recording(cloth, plan, summary.resumed_at); !begun)

@@ -45,6 +45,43 @@ TEST_CASE("a run that was killed goes on to the same bits") {
   }
 }
 
+TEST_CASE(
+    "a run whose cloth has torn goes on to the same bits, and so do recordings of both parts") {
+  const TemporaryFolder folder;
+  const std::string run =
+                        "hang --size 12 --material cotton --self-contact on --dt 1/60 --strength ",
+                    state = folder.file("state.weft"), again = folder.file("again.weft");
+  const auto recorded = [&](const std::string& name) { return " --record " + folder.file(name); };
+  const auto whole = report_of(folder, run + "0.8 --steps 60" + recorded("whole.weft"));
+  CHECK(whole["torn"] > 0);
+  const auto first = report_of(folder, run + "0.8 --steps 40 --save " + state);
+  CHECK(first["torn"] > 0);
+  report_of(folder, run + "0.8 --steps 50 --resume " + state + " --save " + again);
+  const auto last =
+      report_of(folder, run + "0.8 --steps 60 --resume " + again + recorded("rest.weft"));
+  CHECK(last["state_hash"] == whole["state_hash"]);
+  CHECK(last["frames"] == 10);
+  for (const char* name : {"whole.weft", "rest.weft"})
+    CHECK(run_program(folder, "replay " + folder.file(name)).exit_code == 0);
+  const Outcome refused = run_program(folder, "run " + run + "0.9 --steps 60 --resume " + state);
+  CHECK(refused.exit_code != 0);
+  CHECK(refused.err.find("state: is of another model") != std::string::npos);
+}
+
+TEST_CASE("cloth that has torn and grows is resumed to the same bits") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.file("scene.json"), state = folder.file("state.weft");
+  const Outcome written =
+      run_program(folder, "scene hang --size 12 --material cotton --strength 0.8 --out " + scene);
+  REQUIRE(written.exit_code == 0);
+  std::string text = folder.read("scene.json");
+  text.insert(text.rfind('}'), R"(, "rest_scale": {"times": [0, 1], "scales": [1, 0.9]})");
+  const std::string run = folder.write("growing.json", text) + " --dt 1/60 --steps ";
+  const auto whole = report_of(folder, run + "60");
+  CHECK(report_of(folder, run + "40 --save " + state)["torn"] > 0);
+  CHECK(report_of(folder, run + "60 --resume " + state)["state_hash"] == whole["state_hash"]);
+}
+
 TEST_CASE("pins that move, and a run that is resumed twice, come to the same bits") {
   const TemporaryFolder folder;
   const std::string scene =
