@@ -45,7 +45,7 @@ Result<Scene> make_pillow(const Options& options) {
 }  // namespace
 
 BuiltIn pillow() {
-  return {.summary = "two sheets of cotton, sewn together, are blown up and fall on a floor",
+  return {.summary = "two sewn sheets of cotton are blown up and fall on a floor",
           .is_fabric = true,
           .smallest_size = 3,
           .make = make_pillow};
