@@ -13,7 +13,6 @@
 #include "engine/model/model.h"
 #include "engine/model/saved_model.h"
 #include "engine/model/threads.h"
-#include "engine/validation.h"
 #include "tools/program/measure/cpu_time.h"
 #include "tools/program/run/frame_calls.h"
 #include "tools/program/run/step_total.h"
