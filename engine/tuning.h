@@ -17,6 +17,10 @@ struct Patience {
 /// Relaxation factor of a correction. At 1 a woven sheet of 41 x 41 gains 0.9 J in a second in 400
 /// substeps a frame; at 0.8 it gains none in 1600. A smaller factor makes softer constraints.
 inline constexpr double kOmega = 0.8;
+/// In substeps: the least time constant of damping that triangles of fabric may have, if they are
+/// stiffer than a sweep resolves. A sweep leaves (1 + time) times what it leaves of a law that is
+/// not damped.
+inline constexpr double kLeastDamping = 0.5;
 /// Local passes look at a constraint whose strain exceeds this share of the tolerance. The rest is
 /// room for what corrections of its neighbours add.
 inline constexpr double kLocalShare = 0.99;

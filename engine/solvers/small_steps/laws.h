@@ -19,6 +19,7 @@ namespace weft {
 struct LawStep {
   reference::SpringStep springs{};
   double softest = std::numeric_limits<double>::infinity();  // m/N; softer springs are left
+  double damping_of_triangles = 0;  // (time constant) / h, of what a sweep can damp of it
 
   bool is_kept(const ConstraintStore& s, std::uint32_t c) const {
     return s.compliance[c] <= softest;

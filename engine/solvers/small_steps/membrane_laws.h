@@ -14,7 +14,18 @@
 namespace weft {
 
 inline reference::MembraneStep membrane_step(const LawStep& step) {
-  return {1 / step.springs.scale, step.springs.damping};
+  return {1 / step.springs.scale, step.damping_of_triangles};
+}
+
+/// 1/s^2, the largest stiffness of a law over the mass that it moves, at rest; 0: there are none.
+inline double stiffest_law(const MembraneStore& s) {
+  double most = 0;
+  for (const auto& [shape, mobility, stiffness, is_rope] : s.element) {
+    const double stretch = std::max(stiffness[0] * mobility.uu, stiffness[1] * mobility.vv);
+    const double shear = stiffness[2] * (mobility.uu + mobility.vv);
+    most = std::max(most, shape.area * std::max(stretch, shear));
+  }
+  return most;
 }
 
 /// An element where the particles are, and where they were when the substep began.

@@ -13,6 +13,7 @@
 #include "engine/solvers/small_steps/arrivals.h"
 #include "engine/solvers/small_steps/laws.h"
 #include "engine/solvers/small_steps/local_passes.h"
+#include "engine/solvers/small_steps/membrane_laws.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/solvers/small_steps/substep_formula.h"
 #include "engine/tuning.h"
@@ -33,6 +34,7 @@ struct Substep {
   std::vector<std::uint32_t> touched{};      // slots that contacts have pushed
   std::vector<Arrival> arrived{};
   std::vector<Jolt> jolts{};
+  double stiffest = stiffest_law(model.membrane);
 
   bool is_free(std::size_t slot) const { return model.inverse_mass[slot] > 0; }
   bool measures_departures() const { return settings.motion_tolerance > 0; }
@@ -40,7 +42,16 @@ struct Substep {
   double local_tolerance() const { return tuning::kLocalShare * settings.tolerance; }
   LawStep law_step() const {
     if (softest) return {{1 / (h * h), 0}, *softest};
-    return {{1 / formula.give(h), model.damping.stretch / h}};
+    const double give = formula.give(h), damping = model.damping.stretch / h;
+    return {.springs = {1 / give, damping}, .damping_of_triangles = dampable(damping, give)};
+  }
+  /// The part of a damping with which one sweep still holds the laws of triangles at rest. A visit
+  /// of a law that is too stiff, with its damping, is relaxed (reference::MembraneLaw::impulse).
+  /// The law is as many times softer then.
+  double dampable(double damping, double give) const {
+    const double own = give * stiffest, most_own = 1 / (1 / omega - 0.5);
+    if (own == 0) return damping;
+    return std::min(damping, std::max(most_own / own - 1, tuning::kLeastDamping));
   }
   /// The formula of a substep of h after one of h_before.
   SubstepFormula formula_after(double h_before) const {

@@ -40,6 +40,27 @@ TEST_CASE("a balloon grows until its pressure is 2 T / r") {
   }
 }
 
+TEST_CASE("damping of stretch leaves a balloon as large as its pressure makes it") {
+  constexpr double kStiffness = 4000, kPressure = 800;
+  const double strain = 1 / (1 - kPressure * kBalloonRadius / (2 * kStiffness)) - 1;
+  for (const Settings& settings : kSmallSteps) {
+    for (const double tau : {1e-3, 1e-2, 0.1}) {
+      for (const double dt : {1. / 30, 1. / 60, 1. / 240}) {
+        CAPTURE(tau);
+        CAPTURE(dt);
+        SceneDescription scene = balloon(2, kStiffness, 8);
+        scene.damping.stretch = tau;
+        scene.pressures = {{.pressure = kPressure}};
+        Cloth cloth = cloth_of(scene, settings);
+        run(cloth, dt, static_cast<int>(std::lround(0.5 / dt)));
+        CHECK(step(cloth, dt).status == Status::converged);
+        const double reached = mean_radius(cloth) / kBalloonRadius - 1;
+        CHECK(std::abs(reached - strain) < cloth.settings().tolerance);
+      }
+    }
+  }
+}
+
 TEST_CASE("a balloon that breathes gains no energy, and keeps most of it") {
   constexpr double kPressure = 600;
   for (const Settings& settings : kSmallSteps) {
