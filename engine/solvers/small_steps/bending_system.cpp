@@ -77,7 +77,7 @@ Result BendingSystem<Real>::sum(Team& team, std::vector<Result>& parts, Work&& w
 
 template <class Real>
 void BendingSystem<Real>::prepare_diagonal(const BendingLaw& law) {
-  if (law == prepared_ && factor_ == nullptr) return;
+  if (law == prepared_ && factor_ == nullptr && !guess_.empty()) return;
   if (guess_.empty()) allocate();
   prepared_ = law;
   factor_ = nullptr;

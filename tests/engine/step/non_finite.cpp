@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 
+#include "tests/support/bending.h"
 #include "tests/support/clothes.h"
 #include "tests/support/motion.h"
 #include "tests/support/vectors.h"
@@ -245,6 +246,19 @@ TEST_CASE("an overflow in a fixed number of iterations is seen too") {
   const std::uint64_t before = cloth.state_hash();
   CHECK(step(cloth, 0.01).status == Status::non_finite_input);
   CHECK(cloth.state_hash() == before);
+}
+
+TEST_CASE("a step of more seconds than numbers hold changes nothing, of what bends, too") {
+  for (const Backend backend : {Backend::reference, Backend::simd}) {
+    for (const double dt : {1e100, 1e160, 1e300}) {
+      CAPTURE(dt);
+      Cloth cloth = cloth_of(cantilever({}), {.solver = Solver::small_steps, .backend = backend});
+      const std::uint64_t before = cloth.state_hash();
+      CHECK_FALSE(committed(step(cloth, dt).status));
+      CHECK(cloth.state_hash() == before);
+      CHECK(step(cloth, 0.01).status == Status::converged);
+    }
+  }
 }
 
 TEST_CASE("particles that coincide are parted") {
