@@ -207,7 +207,8 @@ std::optional<double> LaneStore::predict(Team& team) {
 
 /// The decay of all velocities but those of pins.
 void LaneStore::decay(double to, Team& team) {
-  const auto left = static_cast<float>(to);
+  constexpr float kLeast = 1e-30f;  // by which floats can be divided again
+  const float left = std::max(static_cast<float>(to), kLeast);
   for_floats(team, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       v_[i] *= left;
