@@ -115,8 +115,9 @@ void add_making(ClothClass& cloth) {
           "The state as bytes for a file.")
       .def(
           "load_state",
-          [](HeldCloth& c, const py::bytes& saved) {
+          [](HeldCloth& c, const py::buffer& given) {
             const auto used = use(c);
+            const py::bytes saved = whole(given);
             const auto bytes = bytes_of(saved);
             const py::gil_scoped_release release;
             check(c.value.load_state(bytes));

@@ -111,10 +111,37 @@ py::dtype record_type<Torn>() {
   return fields.type(sizeof(Torn));
 }
 
+namespace {
+
+/// count records of the type, with the defaults of its struct.
+py::array default_records(const py::dtype& type, py::ssize_t count) {
+  if (count < 0) refuse("count: " + std::to_string(count) + " is below 0");
+  py::object made;
+  std::string names;
+  for_each_element_kind([&]<class Element>(const ElementKind<Element>& kind) {
+    names += (names.empty() ? "" : ", ") + std::string(kind.type);
+    if (made || !record_type<Element>().equal(type)) return;
+    py::array array(type, std::vector<py::ssize_t>{count});
+    auto* const out = static_cast<std::byte*>(array.mutable_data());
+    const Element one{};
+    for (py::ssize_t i = 0; i < count; ++i)
+      std::memcpy(out + i * py::ssize_t{sizeof(Element)}, &one, sizeof(Element));
+    made = std::move(array);
+  });
+  if (!made) refuse("type: is none of " + names);
+  return made;
+}
+
+}  // namespace
+
 void add_records(py::module_& m) {
   for_each_element_kind([&]<class Element>(const ElementKind<Element>& kind) {
     m.attr(kind.type) = record_type<Element>();
   });
+  m.def(
+      "records", &default_records, py::arg("type"), py::arg("count"),
+      "An array of so many records of a type, such as weft.Constraint, with the defaults of their "
+      "fields.");
   m.attr("BodyContact") = record_type<BodyContact>();
   m.attr("Torn") = record_type<Torn>();
 }

@@ -25,12 +25,24 @@ void check_kinds(const std::vector<Element>& elements, ConstraintKind Element::*
   }
 }
 
+/// A strength of 0 means broken, and an array of zeros is full of that.
+template <class Element>
+void check_strengths(const std::vector<Element>& elements, const std::string& list) {
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    if (elements[i].strength != 0) continue;
+    refuse(list + "[" + std::to_string(i) +
+           "].strength: 0 is that of a broken one; records() makes records with the defaults, and "
+           "np.zeros does not");
+  }
+}
+
 template <class Element>
 std::vector<Element> checked_records(py::handle value, const std::string& list) {
   std::vector<Element> out = records<Element>(value, list);
   for_each_element_field<Element>([&]<class V, class N>(const ElementField<Element, V, N>& field) {
     if constexpr (std::is_same_v<V, ConstraintKind>) check_kinds(out, field.member, list);
   });
+  if constexpr (requires(Element element) { element.strength; }) check_strengths(out, list);
   return out;
 }
 
@@ -116,7 +128,8 @@ void add_model(py::module_& m) {
       py::arg("model"), "The model as bytes for a file.");
   m.def(
       "load_model",
-      [](const py::bytes& saved) {
+      [](const py::buffer& given) {
+        const py::bytes saved = whole(given);
         const std::span<const std::byte> bytes = bytes_of(saved);
         const py::gil_scoped_release release;
         return HeldModel{value_of(load_model(bytes))};

@@ -22,7 +22,7 @@ SHORTER = [(r"weft\._weft\.", ""), (r"\bList\[", "list["), (r"\bTuple\[", "tuple
            (r"\bhandle\b", "Any"), (r"\b[iI]terable\b", "Iterable[Any]"),
            (r"\[\d+\]", ""), (r"\b(list|dict)\b(?!\[)", r"\1[Any]"), (r"dict\[Any\]", "dict[Any, Any]"),
            (r"Optional\[([^][]*(\[[^][]*\])?)\]", r"\1 | None"), (r"\bbuffer\b", "Any"),
-           (r"\bos\.PathLike\b", "str | PathLike[str]")]
+           (r"\bos\.PathLike\b", "str | PathLike[str]"), (r"^dtype$", "np.dtype[np.void]")]
 
 
 def shorter(kind):

@@ -31,8 +31,8 @@ class Cloths(unittest.TestCase):
         cloth.add_body(weft.Body(shape=weft.build_shape(weft.Ball(centre=(0.5, -0.3, 0.5), radius=0.25))))
         for _ in range(10):
             cloth.step(0.01)
-        again = weft.Cloth.create(weft.load_model(weft.save_model(cloth.model)))
-        again.load_state(cloth.save_state())
+        again = weft.Cloth.create(weft.load_model(bytearray(weft.save_model(cloth.model))))
+        again.load_state(np.frombuffer(cloth.save_state(), np.uint8))
         other = cloth.clone()
         for one in (cloth, again, other):
             one.step(0.01)

@@ -62,6 +62,17 @@ class Scenes(unittest.TestCase):
         self.assertEqual(repr(weft.SceneDescription(positions=[[0, 0, 0]] * 9)),
                          "weft.SceneDescription(positions=<array (9, 3)>)")
 
+    def test_records_have_the_defaults(self):
+        links = weft.records(weft.Constraint, 1)
+        links["b"], links["rest_length"] = 1, 1
+        scene = weft.SceneDescription(positions=[(0, 0, 0), (1, 0, 0)], masses=[1, 1], fixed=[0], constraints=links)
+        cloth = weft.Cloth.create(weft.build_model(scene))
+        for _ in range(60):
+            cloth.step(1 / 60)
+        self.assertLess(abs(np.linalg.norm(cloth.position(1)) - 1), 0.01)
+        seams, anchors = weft.records(weft.Seam, 2), weft.records(weft.Anchor, 0)
+        self.assertEqual((seams["time"][1], seams["strength"][1], anchors.shape), (1, np.inf, (0,)))
+
     def test_one_fixed_particle_is_moved(self):
         made = weft.cloth_from_mesh(sheet(3))
         made.scene.fixed = [4]
@@ -102,6 +113,12 @@ class Refused(unittest.TestCase):
         self.refuses("constraints: not records", weft.SceneDescription, constraints=[(1, 2)])
         self.refuses(r"constraints\[0\].kind: 2", weft.SceneDescription, constraints=[(0, 1, 1.0, 2, 0)])
         self.refuses("faces", weft.MeshDescription().set_faces, [1, 2, 3])
+        links = weft.records(weft.Constraint, 2)
+        links["strength"] = 5, 0
+        self.refuses(r"constraints\[1\].strength: 0 ", weft.SceneDescription, constraints=links)
+        self.refuses(r"seams\[0\].strength: 0 ", weft.SceneDescription, seams=np.zeros(1, weft.Seam))
+        self.refuses("type: is none of Constraint, ", weft.records, np.dtype(float), 1)
+        self.refuses("count: -1 is below 0", weft.records, weft.Constraint, -1)
 
     def test_a_cloth_is_unchanged(self):
         cloth = cloth_of(8)
@@ -132,6 +149,7 @@ class Refused(unittest.TestCase):
         saved = bytearray(cloth.save_state())
         saved[len(saved) // 2] ^= 1
         self.refuses("", cloth.load_state, bytes(saved))
+        self.refuses("", cloth.load_state, memoryview(saved))
         self.refuses("", weft.load_model, b"nothing")
 
 
