@@ -492,6 +492,11 @@ inline constexpr double kSliderShare = 0.25;
 /// A crack goes on away from where it comes from, if the direction across the tension leads there
 /// by this share. Else, as where the tension runs along it, both directions are as good.
 inline constexpr double kLeastOpening = 0.1;
+/// Automatic substeps are no longer than so many radians of the swing of a spring that carries this
+/// share of its strength or more: longer ones solve it too soft. Pinned strips tear within 2 % at 2
+/// radians, and at 1.03 to 2.5 times their stretch without this (engine/step/tearing.h).
+inline constexpr double kTearingTurn = 2;
+inline constexpr double kNearStrength = 0.5;
 /// Ends of a seam that are nearer than this share of a side are drawn as one. A closed seam holds
 /// them far nearer; a larger share draws an open seam as closed.
 inline constexpr double kClosedSeam = 0.05;

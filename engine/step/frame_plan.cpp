@@ -10,6 +10,7 @@
 #include "engine/solvers/small_steps/small_steps_load.h"
 #include "engine/step/burden.h"
 #include "engine/step/pressure.h"
+#include "engine/step/tearing.h"
 #include "engine/tuning.h"
 
 namespace weft {
@@ -42,8 +43,10 @@ double usual_length(State& s, double dt) {
   const double of_load =
       substep_length(s.model->small_steps().load, s.position.view(), burden, s.settings.tolerance);
   const double of_pressure = presses(s) ? length_for_pressure(s) : tuning::kLongestSubstep;
+  const double of_tears =
+      s.model->may_tear ? substep_length_for_strengths(s) : tuning::kLongestSubstep;
   const double length = std::min({tuning::kLongestSubstep, length_for_air(s), of_load, of_pressure,
-                                  substep_length_for_folds(*s.model, s.position.view())});
+                                  of_tears, substep_length_for_folds(*s.model, s.position.view())});
   if (!refines_substeps(s)) return length;
   const double shorter = std::exp2(-std::max(0.0, s.refinement));
   if (s.settings.motion_tolerance == 0) return length * shorter;

@@ -10,11 +10,13 @@
 #include <utility>
 #include <vector>
 
+#include "engine/measure/state_measure.h"
 #include "engine/model/pressures.h"
 #include "engine/model/tear.h"
 #include "engine/partition.h"
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/step/flanks.h"
+#include "engine/tuning.h"
 
 namespace weft {
 namespace tearing {
@@ -255,8 +257,44 @@ void go_on_torn(State& s, TornModel&& torn) {
   s.torn = std::move(torn.torn);
 }
 
+/// By its law, where the spring is now.
+bool is_near_strength(const State& s, std::size_t c) {
+  const ConstraintStore& store = s.model->constraints;
+  const double longer =
+      length(s.position[store.b[c]] - s.position[store.a[c]]) - store.rest_length[c];
+  return longer > tuning::kNearStrength * store.strength[c] * store.compliance[c];
+}
+bool is_triangle_near_strength(const State& s, std::size_t i) {
+  const MembraneStore& store = s.model->membrane;
+  const reference::Deformation f = deformation_of(store, s.position, i);
+  const auto& stiffness = store.element[i].stiffness;
+  const double most = std::max(stiffness[0] * (length(f.u) - 1), stiffness[1] * (length(f.v) - 1));
+  return most > tuning::kNearStrength * store.strength[i];
+}
+
 }  // namespace
 }  // namespace tearing
+
+double substep_length_for_strengths(const State& s) {
+  double square = std::numeric_limits<double>::infinity();  // s^2, in which the fastest swings
+  const ConstraintStore& springs = s.model->constraints;
+  for (std::size_t c = 0; springs.has_springs() && c < springs.strength.size(); ++c) {
+    const bool may_break = std::isfinite(springs.strength[c]) && springs.compliance[c] > 0;
+    if (may_break && tearing::is_near_strength(s, c))
+      square = std::min(square, springs.compliance[c] * springs.effective_mass[c]);
+  }
+  const MembraneStore& triangles = s.model->membrane;
+  for (std::size_t i = 0; i < triangles.strength.size(); ++i) {
+    if (!std::isfinite(triangles.strength[i]) || !tearing::is_triangle_near_strength(s, i))
+      continue;
+    const reference::MembraneElement& e = triangles.element[i];
+    const double stiffness = std::max(e.stiffness[0], e.stiffness[1]) * e.shape.area;
+    // Its three laws and its neighbors move the same corners: half of the time that one alone
+    // takes.
+    square = std::min(square, 0.25 / (stiffness * e.mobility.most()));
+  }
+  return tuning::kTearingTurn * std::sqrt(square);
+}
 
 bool tear(State& s) {
   const std::vector<std::uint32_t> apart = flanks_apart(s);

@@ -10,4 +10,8 @@ namespace weft {
 /// State::torn tells. Returns whether anything broke.
 bool tear(State& state);
 
+/// s, of the longest substep that solves as stiff as they are the springs and the triangles that
+/// come near their strength; infinite where none does.
+double substep_length_for_strengths(const State& state);
+
 }  // namespace weft

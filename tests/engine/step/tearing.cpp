@@ -183,7 +183,7 @@ struct Strip {
   double length = 0.4;
 };
 Strip strip(std::uint32_t across, std::uint32_t cut, bool is_grid, double strength,
-            double shear = 0) {
+            double shear = 0, double stiffness = kStiffness) {
   const double width = 0.2, h = width / across;
   const std::uint32_t rows = 2 * across, middle = rows / 2;
   MeshDescription mesh;
@@ -220,8 +220,8 @@ Strip strip(std::uint32_t across, std::uint32_t cut, bool is_grid, double streng
     }
   }
   Material material{.density = 0.5,
-                    .warp = kStiffness,
-                    .weft = kStiffness,
+                    .warp = stiffness,
+                    .weft = stiffness,
                     .shear = shear,
                     .bending = 1e-6,
                     .damping_motion = 3};
@@ -319,6 +319,26 @@ TEST_CASE("a strip of triangles tears where its tension is the strength") {
       REQUIRE(!cloth.torn().empty());
       CHECK(cloth.torn()[0].kind == Tear::sheet);
       CHECK(cloth.torn()[0].load == doctest::Approx(kStiffness * kStretch).epsilon(0.02));
+    }
+  }
+}
+
+TEST_CASE("a strip between pins tears at its strength by automatic substeps") {
+  for (const bool is_grid : {true, false}) {
+    for (const std::uint32_t across : {8u, 16u}) {
+      for (const double stiffness : {kStiffness, 10 * kStiffness}) {
+        if (!is_grid && stiffness != kStiffness) continue;
+        for (const double rate : kRates) {
+          CAPTURE(is_grid);
+          CAPTURE(across);
+          CAPTURE(stiffness);
+          CAPTURE(rate);
+          const Strip made = strip(across, 0, is_grid, stiffness * kStretch,
+                                   is_grid ? 0 : stiffness / 2, stiffness);
+          Cloth cloth = cloth_of(made.cloth.scene);
+          CHECK(stretch_at_tear(cloth, made, rate) == doctest::Approx(1).epsilon(0.03));
+        }
+      }
     }
   }
 }
