@@ -20,7 +20,11 @@ weft_material material_of(const Material& m) {
           .lift = m.lift,
           .friction = m.friction,
           .ram = m.ram,
-          .strength = m.strength};
+          .strength = m.strength,
+          .bending_yield = m.bending_yield,
+          .bending_hardening = m.bending_hardening,
+          .bending_friction = m.bending_friction,
+          .bending_slip = m.bending_slip};
 }
 
 }  // namespace
@@ -42,7 +46,11 @@ Result<Material> read_material(const weft_material* material) {
                   .drag = m.drag,
                   .lift = m.lift,
                   .ram = m.ram,
-                  .strength = m.strength};
+                  .strength = m.strength,
+                  .bending_yield = m.bending_yield,
+                  .bending_hardening = m.bending_hardening,
+                  .bending_friction = m.bending_friction,
+                  .bending_slip = m.bending_slip};
 }
 
 }  // namespace weft::c_interface

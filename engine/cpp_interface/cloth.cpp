@@ -147,6 +147,7 @@ Result<void> Cloth::set_rest_shape(const SceneDescription& scene, double scale) 
   if (!description) return Error{description.error()};
   auto changed = impl_->going_on(rebuilt(model, description.value()));
   if (!changed) return Error{changed.error()};
+  changed.value()->state.creases = Creases(*changed.value()->state.model);
   impl_ = std::move(changed).value();
   return {};
 }

@@ -166,7 +166,8 @@ double Cloth::max_penetration() const {
 }
 Energy Cloth::energy() const {
   return measure_energy(*impl_->state.model, impl_->state.gravity, impl_->state.position,
-                        impl_->state.velocity, impl_->state.give_per_mass);
+                        impl_->state.velocity, impl_->state.creases.all(),
+                        impl_->state.give_per_mass);
 }
 
 std::uint64_t Cloth::state_hash() const { return weft::state_hash(impl_->state); }

@@ -71,11 +71,12 @@ double energy_of_membrane(const Model& m, const kernels::Vectors& x, double give
   return sum;
 }
 
-double energy_of_bending(const Model& m, const kernels::Vectors& x, double give_per_mass) {
+double energy_of_bending(const Model& m, const kernels::Vectors& x, std::span<const Crease> creases,
+                         double give_per_mass) {
   const BendingStore& s = m.bending;
   double sum = 0;
   for (std::size_t i = 0; i < s.size(); ++i) {
-    const reference::BendingElement e = element_of(s, i);
+    const reference::BendingElement e = element_of(s, i, creases);
     kernels::Vector d{0, 0, 0};
     double inverse_mass = 0;
     for (std::size_t k = 0; k < 4; ++k) {
@@ -90,7 +91,8 @@ double energy_of_bending(const Model& m, const kernels::Vectors& x, double give_
 }
 
 Energy measure_energy(const Model& m, kernels::Vector gravity, const kernels::Vectors& x,
-                      const kernels::Vectors& v, double give_per_mass) {
+                      const kernels::Vectors& v, std::span<const Crease> creases,
+                      double give_per_mass) {
   Energy energy;
   for (std::size_t i = 0; i < m.slots(); ++i) {
     if (m.inverse_mass[i] == 0) continue;
@@ -98,7 +100,8 @@ Energy measure_energy(const Model& m, kernels::Vector gravity, const kernels::Ve
     energy.potential -= m.mass[i] * dot(gravity, x[i]);
   }
   energy.elastic = energy_of_springs(m, x, give_per_mass) +
-                   energy_of_membrane(m, x, give_per_mass) + energy_of_bending(m, x, give_per_mass);
+                   energy_of_membrane(m, x, give_per_mass) +
+                   energy_of_bending(m, x, creases, give_per_mass);
   return energy;
 }
 

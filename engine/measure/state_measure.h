@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
+#include "engine/model/bending_element.h"
 #include "engine/model/model.h"
 
 namespace weft {
@@ -30,9 +32,10 @@ Strain measure_strain(const Model& model, const kernels::Vectors& position);
 Strain measure_strain(const Model& model, kernels::VectorsView position);
 /// Adds the triangles of fabric to such a strain.
 void add_membrane_strain(const Model& model, const kernels::Vectors& position, Strain& strain);
-/// give_per_mass: of the springs, below.
+/// creases: of all bending elements, where some yield. give_per_mass: of the springs, below.
 Energy measure_energy(const Model& model, kernels::Vector gravity, const kernels::Vectors& position,
-                      const kernels::Vectors& velocity, double give_per_mass = 0);
+                      const kernels::Vectors& velocity, std::span<const Crease> creases,
+                      double give_per_mass = 0);
 /// J. To a sweep a spring is softer than it is: of a substep of h and a relaxation omega
 /// give_per_mass is h^2 / omega, and a spring has the compliance
 ///
@@ -57,7 +60,7 @@ double energy_of_springs(const Model& m, const Vectors& x, double give_per_mass 
 double energy_of_membrane(const Model& model, const kernels::Vectors& position,
                           double give_per_mass = 0);
 double energy_of_bending(const Model& model, const kernels::Vectors& position,
-                         double give_per_mass = 0);
+                         std::span<const Crease> creases, double give_per_mass = 0);
 /// Whether all components, and the squared distances between any two vectors, are finite.
 bool all_finite(const kernels::Vectors& vectors);
 /// The first slot of which that is not true, in x or v; a fixed one only if no free one is among

@@ -36,8 +36,12 @@ struct Crossing {
 
 class Builder {
  public:
-  Builder(const std::vector<Face>& faces, const Edges& edges, double weld_distance)
-      : faces_(faces), edges_(edges), weld_distance_(weld_distance), extent_(extent(faces)) {
+  Builder(const std::vector<Face>& faces, const Edges& edges, double weld_distance, bool have_sides)
+      : faces_(faces),
+        edges_(edges),
+        weld_distance_(weld_distance),
+        have_sides_(have_sides),
+        extent_(extent(faces)) {
     for (const Face& face : faces) areas_.push_back(area(face));
   }
 
@@ -99,12 +103,13 @@ class Builder {
     const std::uint32_t number = crossing_at(point(face(one), corner), pair_key(from, to));
     if (number == built_.stencils.size()) {
       const Stencil hinge = bend(across, i, j);
-      built_.stencils.push_back(hinge.fold == 0 ? without_end(hinge, end) : hinge);
+      const bool is_hinge = have_sides_ || hinge.fold != 0;
+      built_.stencils.push_back(is_hinge ? hinge : without_end(hinge, end));
     }
     const Stencil& stencil = built_.stencils[number];
     for (const EdgeOfFace& of : across.storing()) {
-      built_.contributions.push_back(
-          {number, of.face, weight_in_grid(stencil, area_across(of) / 2)});
+      const double half = area_across(of) / 2;
+      built_.contributions.push_back({number, of.face, weight_in_grid(stencil, half), half});
     }
   }
 
@@ -147,7 +152,7 @@ class Builder {
       const double share = part * area_across(of);
       const double weight =
           face(of).is_quad() ? weight_in_grid(stencil, share) : weight_among_others(stencil, share);
-      built_.contributions.push_back({number, of.face, weight});
+      built_.contributions.push_back({number, of.face, weight, share});
     }
   }
 
@@ -173,13 +178,14 @@ class Builder {
     Stencil stencil = hinge(a, b, far_one, far_two, a.place, b.place, false);
     stencil.fold = fold_of(stencil, {a.place, b.place, far_one.place, far_two.place}, extent_);
     built_.contributions.push_back({static_cast<std::uint32_t>(built_.stencils.size()), number,
-                                    weight_in_grid(stencil, areas_[number])});
+                                    weight_in_grid(stencil, areas_[number]), areas_[number]});
     built_.stencils.push_back(stencil);
   }
 
   const std::vector<Face>& faces_;
   const Edges& edges_;
   const double weld_distance_;
+  const bool have_sides_;
   const double extent_;        ///< m, of the mesh
   std::vector<double> areas_;  ///< m^2, of faces
   Stencils built_;
@@ -188,9 +194,17 @@ class Builder {
 
 }  // namespace
 
-Stencils bending_stencils(const std::vector<Face>& faces, const Edges& edges,
-                          double weld_distance) {
-  return Builder(faces, edges, weld_distance).build();
+Stencils bending_stencils(const std::vector<Face>& faces, const Edges& edges, double weld_distance,
+                          bool have_sides) {
+  return Builder(faces, edges, weld_distance, have_sides).build();
+}
+
+std::vector<double> areas_of(const Stencils& stencils, const std::vector<Face>& faces) {
+  std::vector<double> stored(faces.size()), areas(stencils.stencils.size());
+  for (const Contribution& c : stencils.contributions) stored[c.face] += c.area;
+  for (const Contribution& c : stencils.contributions)
+    areas[c.stencil] += c.area * area(faces[c.face]) / stored[c.face];
+  return areas;
 }
 
 }  // namespace weft::mesh

@@ -8,11 +8,13 @@
 
 namespace weft::mesh {
 
-/// The energy of an element for one face: with the stiffness k, k weight d^2 / 2.
+/// The energy of an element for one face: with the stiffness k, k weight d^2 / 2. area: that it
+/// stores, in m^2, before elements are calibrated.
 struct Contribution {
   std::uint32_t stencil = 0;
   std::uint32_t face = 0;
   double weight = 0;
+  double area = 0;
 };
 
 struct Stencils {
@@ -35,7 +37,12 @@ struct Stencils {
 /// mean over all directions. Faces at the border give what their border edges cannot store to the
 /// other edges. weld_distance: as far apart may be what is one place of two faces; those that lie
 /// farther apart are panels that are sewn: flat to each other, with an element in the places of
-/// each.
-Stencils bending_stencils(const std::vector<Face>& faces, const Edges& edges, double weld_distance);
+/// each. have_sides: all are hinges of four particles, whose fold may come to have a side.
+Stencils bending_stencils(const std::vector<Face>& faces, const Edges& edges, double weld_distance,
+                          bool have_sides);
+
+/// m^2, per element: the part of the faces' area that is its own. Those of a face have all of it
+/// together.
+std::vector<double> areas_of(const Stencils& stencils, const std::vector<Face>& faces);
 
 }  // namespace weft::mesh

@@ -71,7 +71,7 @@ std::vector<Part> parts_of(const Stencils& stencils, const std::vector<Face>& fa
   std::vector<Part> parts;
   std::size_t begin = 0;  // of the present stencil
   for (const std::uint32_t i : order) {
-    const auto& [stencil, number, weight] = contributions[i];
+    const auto& [stencil, number, weight, its_area] = contributions[i];
     if (begin < parts.size() && parts[begin].stencil != stencil) begin = parts.size();
     const Face& face = faces[number];
     for (std::size_t corner = 0; corner < face.size; ++corner) {

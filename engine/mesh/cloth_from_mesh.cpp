@@ -60,35 +60,77 @@ void count_pieces(const SceneDescription& scene, MeshCounts& counts) {
   counts.suggested_weld = joining_distance(scene, pieces);
 }
 
-/// With weights of a size that does not depend on that of the mesh, that of 1, -2, 1: d is a
-/// length.
-BendingElement element_of(const Stencil& stencil, double stiffness) {
+/// By so much weights are multiplied. Their size does not depend on that of the mesh then, but is
+/// that of 1, -2, 1: d is a length.
+double scale_of(const Stencil& stencil) {
   double size = 0;
   for (const double weight : stencil.weights) size += std::abs(weight);
-  const double scale = 4 / size;
-  BendingElement element{stencil.particles, stencil.weights, scale * stencil.rest,
-                         scale * scale / stiffness, scale * stencil.fold};
+  return 4 / size;
+}
+
+BendingElement element_of(const Stencil& stencil, double stiffness) {
+  const double scale = scale_of(stencil);
+  BendingElement element{.particles = stencil.particles,
+                         .weights = stencil.weights,
+                         .rest = scale * stencil.rest,
+                         .compliance = scale * scale / stiffness,
+                         .fold = scale * stencil.fold};
   for (double& weight : element.weights) weight *= scale;
   return element;
 }
 
+/// Rays have no side, and so cannot yield: where the material does the elements of edges and quads
+/// do without them.
+class BendingOfMaterial {
+ public:
+  BendingOfMaterial(const std::vector<Face>& faces, const MeshDescription& mesh,
+                    std::size_t particles)
+      : faces_(well_shaped(faces, mesh.weld_distance, std::numeric_limits<double>::infinity())),
+        yields_(yields(*mesh.material)) {
+    const Edges edges(faces_);
+    stencils_ = bending_stencils(faces_, edges, mesh.weld_distance, yields_);
+    calibrated_ = calibrate(faces_, edges, stencils_, mesh.weld_distance, particles);
+    if (calibrated_.uneven.empty() || yields_) return;
+    add_rays(faces_, edges, mesh.weld_distance, calibrated_.uneven, particles, stencils_);
+    calibrated_ = calibrate(faces_, edges, stencils_, mesh.weld_distance, particles);
+  }
+
+  static bool yields(const Material& m) {
+    return std::isfinite(m.bending_yield) || m.bending_friction > 0;
+  }
+  /// Elements of this stiffness, N m, which yield beyond this curvature, 1/m.
+  void add(double stiffness, double yield, double hardening,
+           std::vector<BendingElement>& to) const {
+    if (!(stiffness > 0)) return;
+    const std::vector<double> areas =
+        std::isfinite(yield) ? areas_of(stencils_, faces_) : std::vector<double>();
+    for (std::size_t i = 0; i < calibrated_.weights.size(); ++i) {
+      const double weight = calibrated_.weights[i];
+      BendingElement& element =
+          to.emplace_back(element_of(stencils_.stencils[i], stiffness * weight));
+      if (!std::isfinite(yield) || !(areas[i] > 0)) continue;
+      element.arm = scale_of(stencils_.stencils[i]);
+      element.yield = element.arm * yield * std::sqrt(areas[i] / weight);
+      element.hardening = hardening;
+    }
+  }
+
+ private:
+  std::vector<Face> faces_;
+  bool yields_;
+  Stencils stencils_;
+  Calibrated calibrated_;
+};
+
+/// Friction is a spring that yields beside the elastic one, without hardening.
 std::vector<BendingElement> bending_of(const std::vector<Face>& faces, std::size_t particles,
                                        const MeshDescription& mesh) {
-  if (!(mesh.material->bending > 0)) return {};
-  constexpr double kAnyChange = std::numeric_limits<double>::infinity();
-  const std::vector<Face> bent = well_shaped(faces, mesh.weld_distance, kAnyChange);
-  const Edges edges(bent);
-  Stencils stencils = bending_stencils(bent, edges, mesh.weld_distance);
-  Calibrated calibrated = calibrate(bent, edges, stencils, mesh.weld_distance, particles);
-  if (!calibrated.uneven.empty()) {
-    add_rays(bent, edges, mesh.weld_distance, calibrated.uneven, particles, stencils);
-    calibrated = calibrate(bent, edges, stencils, mesh.weld_distance, particles);
-  }
+  const Material& m = *mesh.material;
+  if (!(m.bending > 0 || m.bending_friction > 0)) return {};
+  const BendingOfMaterial bending(faces, mesh, particles);
   std::vector<BendingElement> elements;
-  for (std::size_t i = 0; i < calibrated.weights.size(); ++i) {
-    elements.push_back(
-        element_of(stencils.stencils[i], mesh.material->bending * calibrated.weights[i]));
-  }
+  bending.add(m.bending, m.bending_yield, m.bending_hardening, elements);
+  bending.add(m.bending_friction / m.bending_slip, m.bending_slip, 0, elements);
   return elements;
 }
 

@@ -64,13 +64,18 @@ Result<void> check_material(const Material& m) {
       {"material.damping_motion", m.damping_motion},
       {"material.drag", m.drag},
       {"material.lift", m.lift},
-      {"material.ram", m.ram}};
+      {"material.ram", m.ram},
+      {"material.bending_hardening", m.bending_hardening},
+      {"material.bending_friction", m.bending_friction}};
   for (const auto& [field, value] : from_zero) {
     if (auto r = validate_not_negative(field, value); !r) return r;
   }
-  if (!(m.strength > 0))
-    return refuse("material.strength", "must be greater than 0, or infinite", number(m.strength));
-  return {};
+  for (const auto& [field, value] : {std::pair{"material.strength", m.strength},
+                                     std::pair{"material.bending_yield", m.bending_yield}}) {
+    if (!(value > 0)) return refuse(field, "must be greater than 0, or infinite", number(value));
+  }
+  if (auto r = validate_positive("material.bending_slip", m.bending_slip); !r) return r;
+  return validate_square("material.bending_slip", m.bending_slip);
 }
 
 std::span<const NamedMaterial> materials() { return kMaterials; }

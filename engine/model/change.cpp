@@ -97,6 +97,11 @@ class Describer {
                            .rest = s.rest[i],
                            .compliance = s.compliance[i],
                            .fold = s.fold[i]};
+    if (s.may_yield()) {
+      element.yield = s.yielding[i].yield;
+      element.hardening = s.yielding[i].hardening;
+      element.arm = s.yielding[i].arm;
+    }
     const bool has_three = s.slots[i][3] == s.slots[i][2];
     for (std::size_t k = 0; k < 4; ++k) {
       element.particles[k] = k == 3 && has_three ? kNoIndex : particle(s.slots[i][k]);
@@ -215,6 +220,9 @@ void take_rest(const BendingElement& from, double scale, BendingElement& to) {
   for (double& weight : to.weights) weight /= scale;
   to.rest = from.rest;
   to.fold = from.fold;
+  to.yield = from.yield;
+  to.hardening = from.hardening;
+  to.arm = from.arm;
   to.compliance = from.compliance;
 }
 void take_rest(const Tether& from, double scale, Tether& to) { to.length = scale * from.length; }

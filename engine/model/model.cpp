@@ -41,7 +41,7 @@ void shrink_lists(Model& m) {
   fit(c.a, c.b, c.rest_length, c.compliance, c.effective_mass, c.colour, c.described, c.slot);
   fit(m.membrane.slots, m.membrane.rest, m.membrane.element, m.membrane.described);
   BendingStore& b = m.bending;
-  fit(b.slots, b.weights, b.rest, b.compliance, b.fold);
+  fit(b.slots, b.weights, b.rest, b.compliance, b.fold, b.yielding, b.described);
   fit(m.surface, m.air.triangles, m.holds);
 }
 
@@ -239,6 +239,9 @@ void Model::store_membrane(const SceneDescription& d) {
 }
 
 void Model::store_bending(const SceneDescription& d) {
+  const bool may_yield = std::ranges::any_of(d.bending, [](const BendingElement& e) {
+    return std::isfinite(e.yield) || e.hardening > 0 || e.arm > 0;
+  });
   for (std::uint32_t k = 0; k < d.bending.size(); ++k) {
     const BendingElement& element = d.bending[k];
     std::array<std::uint32_t, 4> slots{};
@@ -257,6 +260,9 @@ void Model::store_bending(const SceneDescription& d) {
     bending.rest.push_back(element.rest);
     bending.compliance.push_back(element.compliance);
     bending.fold.push_back(element.fold);
+    if (!may_yield) continue;
+    bending.yielding.push_back({element.yield, element.hardening, element.arm});
+    bending.described.push_back(k);
   }
 }
 

@@ -71,11 +71,21 @@ struct ConstraintStore {
 /// Bending elements (weft.h) in the order of the description, those between fixed particles alone
 /// left out. Where there are three particles the fourth is the third again, with weight 0.
 struct BendingStore {
+  /// As a BendingElement has them.
+  struct Yielding {
+    double yield, hardening, arm;
+  };
   std::vector<std::array<std::uint32_t, 4>> slots;
   std::vector<std::array<double, 4>> weights;
   std::vector<double> rest, compliance, fold;
+  std::vector<Yielding> yielding;        // empty where all have the defaults
+  std::vector<std::uint32_t> described;  // index in the description; empty likewise
   std::size_t size() const { return slots.size(); }
   bool is_folded() const;
+  bool may_yield() const { return !yielding.empty(); }
+  bool yields(std::size_t i) const {
+    return may_yield() && yielding[i].yield < std::numeric_limits<double>::infinity();
+  }
   std::size_t bytes() const;
 };
 

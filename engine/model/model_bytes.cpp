@@ -16,7 +16,7 @@ std::size_t MembraneStore::bytes() const {
 
 std::size_t BendingStore::bytes() const {
   return bytes_of(slots) + bytes_of(weights) + bytes_of(rest) + bytes_of(compliance) +
-         bytes_of(fold);
+         bytes_of(fold) + bytes_of(yielding) + bytes_of(described);
 }
 
 std::size_t SeamStore::bytes() const {

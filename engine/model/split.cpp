@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -323,6 +324,7 @@ class Rewiring {
       if (any_goes && any_stays) {
         e.weights = {};
         e.rest = e.fold = 0;
+        e.yield = std::numeric_limits<double>::infinity();
       } else if (any_goes) {
         *at = added_;
       } else if (!any_stays) {

@@ -62,6 +62,16 @@ Rule rule_of_weights(const FieldName& field, const BendingElement& b) {
   return refuse(field, "must sum to 0", number(sum));
 }
 
+Rule rule_of_yield(const FieldName& field, const BendingElement& b) {
+  if (std::isinf(b.yield)) return {};
+  for (const auto& [name, value] : {std::pair{"yield", b.yield}, std::pair{"arm", b.arm}}) {
+    if (value >= kLeastSquared && value <= kMostSquared) continue;
+    return refuse(field.member(name), "must be from 1e-150 to 1e150, to be squared", number(value));
+  }
+  if (std::abs(b.fold) <= (1 + kLeastSum) * 2 * b.arm) return {};
+  return refuse(field.member("fold"), "is longer than both arms", number(b.fold));
+}
+
 Rule rule_of(const FieldName& field, const BendingElement& b, std::size_t particles) {
   const bool has_three = b.particles[3] == kNoIndex;
   const auto corners = std::span(b.particles).first(has_three ? 3 : 4);
@@ -69,11 +79,13 @@ Rule rule_of(const FieldName& field, const BendingElement& b, std::size_t partic
   if (auto r = rule_of_weights(field.member("weights"), b); !r) return r;
   if (!std::isfinite(b.fold) || std::abs(b.fold) > kMostSquared)
     return refuse(field.member("fold"), "must be finite", number(b.fold));
-  if (b.fold == 0) return {};
-  if (has_three)
-    return refuse(field.member("fold"), "three particles have no side", number(b.fold));
-  if (b.rest != 0) return refuse(field.member("fold"), "has a rest besides", number(b.fold));
-  return {};
+  for (const auto& [name, value] : {std::pair{"fold", b.fold}, std::pair{"yield", b.yield}}) {
+    const bool is_given = value != 0 && std::isfinite(value);
+    if (!is_given) continue;
+    if (has_three) return refuse(field.member(name), "three particles have no side", number(value));
+    if (b.rest != 0) return refuse(field.member(name), "has a rest besides", number(value));
+  }
+  return rule_of_yield(field, b);
 }
 
 /// m, of a triangle of fabric: its area has a square.

@@ -45,8 +45,9 @@ double usual_length(State& s, double dt) {
   const double of_pressure = presses(s) ? length_for_pressure(s) : tuning::kLongestSubstep;
   const double of_tears =
       s.model->may_tear ? substep_length_for_strengths(s) : tuning::kLongestSubstep;
-  const double length = std::min({tuning::kLongestSubstep, length_for_air(s), of_load, of_pressure,
-                                  of_tears, substep_length_for_folds(*s.model, s.position.view())});
+  const double length =
+      std::min({tuning::kLongestSubstep, length_for_air(s), of_load, of_pressure, of_tears,
+                substep_length_for_folds(*s.model, s.creases.all(), s.position.view())});
   if (!refines_substeps(s)) return length;
   const double shorter = std::exp2(-std::max(0.0, s.refinement));
   if (s.settings.motion_tolerance == 0) return length * shorter;
@@ -156,7 +157,8 @@ FramePlan plan_of_step(State& s, const Attempt& attempt, double dt, const Budget
                  .placed = s.placed || takes_over,
                  .anchors = s.anchors.travel(),
                  .seams = s.seams.states(),
-                 .sliders = s.sliders.places()};
+                 .sliders = s.sliders.places(),
+                 .creases = s.creases.all()};
   add_bodies(s, plan);
   keep_length(s, dt);
   const double usual = usual_length(s, dt);
@@ -191,6 +193,7 @@ FramePlan plan_of_projection(State& s, double softest, double h, bool goes_on,
                  .anchors = s.anchors.standing(),
                  .seams = s.seams.states(),
                  .sliders = s.sliders.places(),
+                 .creases = s.creases.all(),
                  .goes_on = goes_on};
   add_bodies(s, plan);
   return plan;
@@ -203,7 +206,8 @@ FramePlan plan_of_look_ahead(const State& s, double h) {
           .softest = std::numeric_limits<double>::infinity(),
           .anchors = s.anchors.standing(),
           .seams = s.seams.states(),
-          .sliders = s.sliders.places()};
+          .sliders = s.sliders.places(),
+          .creases = s.creases.all()};
 }
 
 double next_refinement(const State& s, const FramePlan& plan, const FrameCourse& course,

@@ -53,6 +53,7 @@ const char* fault_of(const LastingState& s, const Model& model) {
   if (!s.anchors.fit(model)) return "anchors";
   if (!s.seams.fit(model)) return "seams";
   if (!s.sliders.fit(model)) return "sliders";
+  if (!s.creases.fit(model)) return "creases";
   if (!s.bodies.are_valid()) return "bodies";
   if (!s.rest.fits(model)) return "rest";
   if (s.asleep.status > Status::non_finite) return "report";

@@ -76,6 +76,7 @@ class Frame {
       passes_.count(solver_.repair(s_.contacts, 0, team_));
     }
     solver_.end_seams();
+    yielded_ += solver_.yield(give_);
     spheres_.watch_crossings(team_);
   }
 
@@ -157,6 +158,8 @@ class Frame {
   /// J, by springs, triangles of fabric and bending elements, since the beginning: there those that
   /// have become stiffer because substeps are shorter had no more than before.
   double released() { return elastic_energy_before_ - elastic_energy(s_.solved, give_); }
+  /// J, that bending elements have lost since the beginning because they yielded.
+  double yielded() const { return yielded_; }
   /// See FrameForces::end().
   double end_forces() { return forces_.end(); }
   FrameCourse course() const {
@@ -240,6 +243,7 @@ class Frame {
   double left_ = 0;                   // FrameCourse
   double give_ = 0;                   // s^2, give_per_mass()
   double elastic_energy_before_ = 0;  // J, in the beginning
+  double yielded_ = 0;                // J
 };
 
 /// As timed. To find contacts with bodies is a stage of its own.
@@ -268,6 +272,7 @@ void commit(State& s, const Remains& remains, Team& team) {
   if (s.laws) s.elastic_energy = energy_of_springs(*s.model, s.solved, s.give_per_mass);
   s.seams.take(s.small_steps->seams().states());
   s.sliders.take(s.small_steps->sliders().places());
+  s.creases.take(s.small_steps->creases().creases());
   if (!takes_over_in(s)) s.small_steps->keep(team);  // else the past is not looked at
 }
 
@@ -279,7 +284,8 @@ Remains end_frame(State& s, Frame& frame, const FramePlan& plan, double h, const
   const double released =
       frame.released() + trial.seam_work + s.body_report.work + s.body_report.untangling;
   if (s.settings.iterations == 0)
-    remains.lost_energy = guard_springs(s, remains.lost_energy, released, h, change);
+    remains.lost_energy =
+        guard_springs(s, remains.lost_energy, released - std::max(0.0, frame.yielded()), h, change);
   if (pins_move(s)) trial.pin_work = work_of(motion_of_pins(s, h), s, h);
   trial.energy_lost = trial.pin_work + released - 0.5 * change.gain;
   if (!takes_over_in(s)) trial.motion_error = s.small_steps->motion_error();

@@ -27,6 +27,7 @@ LastingState::LastingState(const Model& model)
       anchors(model),
       seams(model),
       sliders(model),
+      creases(model),
       rest(model) {}
 
 void LastingState::forget_past() {
@@ -172,6 +173,7 @@ void State::go_on_from(const State& from) {
   next.pins = {};
   next.pins.go_on_from(from.pins, its_model, *model, next.position);
   next.anchors.tie(model->anchors, next.position);
+  next.creases = Creases(from.creases, its_model, *model);
   next.rest = rest;
   if (are_different(*model, its_model)) next.lengthening = {};
   take(std::move(next), from.settings);
@@ -197,8 +199,8 @@ std::size_t State::bytes() const {
   }
   sum += contacts.bytes() + nearby.bytes() + coplanar_layers.bytes() + bytes_of(impulses) +
          bytes_of(inverse_mass_of_met) + bytes_of(resistances) + pins.bytes() + anchors.bytes() +
-         seams.bytes() + sliders.bytes() + bodies.bytes() + rest.bytes() + pressed.bytes() +
-         bytes_of(pressures) + bytes_of(gas) + bytes_of(torn) + measure->bytes();
+         seams.bytes() + sliders.bytes() + creases.bytes() + bodies.bytes() + rest.bytes() +
+         pressed.bytes() + bytes_of(pressures) + bytes_of(gas) + bytes_of(torn) + measure->bytes();
   for (const Pressure& part : pressures) sum += bytes_of(part.triangles);
   if (team_state) sum += sizeof(Team::SharedState);
   if (arena_run) sum += sizeof(ArenaRun);

@@ -31,6 +31,7 @@
 #include "engine/spheres/nearby_pairs.h"
 #include "engine/spheres/sphere_contacts.h"
 #include "engine/step/anchors.h"
+#include "engine/step/creases.h"
 #include "engine/step/lengthening.h"
 #include "engine/step/pins.h"
 #include "engine/step/rest.h"
@@ -75,6 +76,7 @@ struct Checkpoint {
   kernels::Vectors position, velocity;
   Seams seams;
   Sliders sliders;
+  Creases creases;
   double lost_energy = 0, elastic_energy = 0, give_per_mass = 0, longest_substep = 0;
 };
 
@@ -105,6 +107,7 @@ struct LastingState {
   Anchors anchors;
   Seams seams;
   Sliders sliders;
+  Creases creases;
   Bodies bodies;
   bool placed = true;         // positions were given, not stepped to: they may violate constraints
   bool displaced = false;     // they may, though stepped to: a pin was put down, the model changed
@@ -128,10 +131,10 @@ struct LastingState {
   void forget_past();
   friend void visit_fields(Is<LastingState> auto& state, auto& archive) {
     auto& [position, velocity, force, gravity, wind, way, pressures, gas, pins, anchors, seams,
-           sliders, bodies, placed, displaced, rests_differ, lost_energy, elastic_energy,
+           sliders, creases, bodies, placed, displaced, rests_differ, lost_energy, elastic_energy,
            give_per_mass, longest_substep, refinement, lengthening, rest, asleep] = state;
     archive(position, velocity, force, gravity, wind, way, pressures, gas, pins, anchors, seams,
-            sliders, bodies, placed, displaced, rests_differ, lost_energy, elastic_energy,
+            sliders, creases, bodies, placed, displaced, rests_differ, lost_energy, elastic_energy,
             give_per_mass, longest_substep, refinement, lengthening, rest, asleep);
   }
 };

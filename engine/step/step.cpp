@@ -30,6 +30,7 @@ class Transaction {
   explicit Transaction(State& s) : s_(s), refinement_(s.refinement) {
     s_.step_start.seams = s_.seams;
     s_.step_start.sliders = s_.sliders;
+    s_.step_start.creases = s_.creases;
     s_.step_start.lost_energy = s_.lost_energy;
     s_.step_start.elastic_energy = s_.elastic_energy;
     s_.step_start.give_per_mass = s_.give_per_mass;
@@ -40,6 +41,7 @@ class Transaction {
     s_.refinement = refinement_;
     std::swap(s_.seams, s_.step_start.seams);
     std::swap(s_.sliders, s_.step_start.sliders);
+    std::swap(s_.creases, s_.step_start.creases);
     s_.lost_energy = s_.step_start.lost_energy;
     s_.elastic_energy = s_.step_start.elastic_energy;
     s_.give_per_mass = s_.step_start.give_per_mass;

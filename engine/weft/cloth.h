@@ -329,11 +329,11 @@ class WEFT_API Cloth {
   /// Gives the cloth another shape at rest, for cloth that shrinks, grows or is inflated, and for
   /// garments on bodies that grow. It takes from `scene`, times `scale`: rest lengths of
   /// constraints, corners of triangles of fabric, lengths of tethers, and of bending elements the
-  /// weights (over `scale`, so angles stay), rest and fold; and compliances of constraints and
-  /// bending elements. Its elements must be those of this cloth, with the same particles, as torn;
-  /// all else in it is ignored. cloth_from_mesh makes such a scene of the same mesh with other
-  /// rest_positions. Strain, areas and distances of contacts are then those of the new shape.
-  /// Stiffnesses of triangles, masses, positions and velocities stay.
+  /// weights (over `scale`, so angles stay), rest, fold and yield; and compliances of constraints
+  /// and bending elements. Creases are forgotten. Its elements must be those of this cloth, with
+  /// the same particles, as torn; all else in it is ignored. cloth_from_mesh makes such a scene of
+  /// the same mesh with other rest_positions. Strain, areas and distances of contacts are then
+  /// those of the new shape. Stiffnesses of triangles, masses, positions and velocities stay.
   ///
   /// The shape is given as a whole, so a scale does not add up over calls. It is part of the model,
   /// as what change() changes is (load_state), and takes about as long as that. Where a length

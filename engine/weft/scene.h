@@ -90,6 +90,21 @@ enum class Tear : std::uint8_t { constraint, seam, anchor, sheet };
 /// So fold is positive where 2 and 3 stand on the side from which the face (0, 1, 3) is seen
 /// counter-clockwise, if their weights are positive. Beyond 147 degrees n is shorter than 1: a fold
 /// that turns all the way over changes its sign without a jump.
+///
+/// A hinge may yield, as cloth does that is folded and pressed. Then the angle t between its faces
+/// is measured (0: flat), and the angle t0 at which it rests: fold = 2 arm sin(t0 / 2). Elements
+/// that meet at an edge's end yield together, since none of them knows in which direction the cloth
+/// is bent there. With
+///
+///     r^2 = (sum of arm^2 (t - t0)^2 / compliance) / (sum of yield^2 / compliance)
+///
+/// over them, a hinge yields where r > 1 + hardening w. Then t0 follows t, until r = 1 + hardening
+/// w, where w is the sum of all falls of r that its yielding has caused. So a hinge by itself rests
+/// where it was bent to, less the angle yield / arm. Where several elements are over the same
+/// particles, the first ones yield together, and so do the second ones. To yield takes energy, and
+/// gives none back.
+/// Beyond 147 degrees a hinge that yields counts |d| in place of d . n: it folds flat like any
+/// other, and rests there.
 struct BendingElement {
   std::array<std::uint32_t, 4> particles{};  ///< all different; the last may be kNoIndex
   /// The last is 0 where its particle is kNoIndex. All are 0 where a tear has cut the element.
@@ -97,6 +112,12 @@ struct BendingElement {
   double rest = 0;        ///< m, |d| of the shape at rest; 0: flat
   double compliance = 0;  ///< m/N, > 0
   double fold = 0;        ///< m, d along n at rest, of hinges; 0: flat
+  /// m, > 0, of hinges: how far d may be from its rest; infinite: it never yields.
+  double yield = std::numeric_limits<double>::infinity();
+  double hardening = 0;  ///< at least 0; used with a yield
+  /// m, > 0 with a yield: d per radian where the hinge is nearly flat. |c_2| times the distance of
+  /// particle 2 from the edge, and the same of particle 3.
+  double arm = 0;
 };
 
 /// A triangle of fabric. The columns of its deformation F = [f_u f_v] are the images of a unit of

@@ -145,6 +145,12 @@ inline constexpr std::tuple kElementFields<BendingElement>{
                  "bending_compliances", &weft_scene::bending_compliances},
     ElementField{"fold", &BendingElement::fold, Values::ruled, Given::maybe, "bending_folds",
                  &weft_scene::bending_folds, Given::maybe},
+    ElementField{"yield", &BendingElement::yield, Values::positive_or_infinite, Given::maybe,
+                 "bending_yields", &weft_scene::bending_yields, Given::maybe},
+    ElementField{"hardening", &BendingElement::hardening, Values::not_negative, Given::maybe,
+                 "bending_hardenings", &weft_scene::bending_hardenings, Given::maybe},
+    ElementField{"arm", &BendingElement::arm, Values::not_negative, Given::maybe, "bending_arms",
+                 &weft_scene::bending_arms, Given::maybe},
 };
 
 template <>

@@ -20,6 +20,7 @@ typedef struct weft_material { /* Material */
   double friction;
   double ram;
   double strength;
+  double bending_yield, bending_hardening, bending_friction, bending_slip;
 } weft_material;
 
 WEFT_API weft_result weft_init_material(weft_material* material, size_t size);

@@ -109,6 +109,10 @@ typedef struct weft_scene { /* SceneDescription */
   const double* membrane_strengths;
   const double* anchor_strengths;
   const double* seam_strengths;
+
+  const double* bending_yields;     /* m, of hinges; or NULL: infinite, none yields */
+  const double* bending_hardenings; /* or NULL: 0 */
+  const double* bending_arms;       /* m; or NULL: 0 */
 } weft_scene;
 
 typedef struct weft_model_info { /* ModelInfo */

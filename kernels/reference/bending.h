@@ -20,6 +20,7 @@ struct BendingElement {
   double rest, compliance;
   std::optional<std::uint32_t> beside = {};  // a slot: one that three particles turn with
   double fold = 0;                           // m, of a hinge
+  bool yields = false;                       // a hinge whose fold may change
 };
 
 /// x: where particles are, by their slots.
@@ -40,12 +41,12 @@ struct BendingArms {
   kernels::Vector along, across;
 };
 /// The order of its particles: the arms join 0 to 1 and 2 to 3, or the ends, 0 and 2. A hinge that
-/// is folded at rest keeps its order.
+/// is folded at rest, or may come to be, keeps its order.
 inline std::array<std::size_t, 4> order_of_arms(const BendingElement& e) {
   const auto& w = e.weights;
   const auto size = [&](std::size_t k) { return std::abs(w[k]); };
   std::array<std::size_t, 4> order{0, 1, 2, 3};
-  if (e.fold != 0) return order;
+  if (e.fold != 0 || e.yields) return order;
   if (has_three(e)) {
     if (size(0) > size(1) && size(0) > size(2)) order = {1, 0, 2, 2};
     if (size(2) > size(1) && size(2) > size(0)) order = {0, 2, 1, 1};
@@ -127,12 +128,18 @@ inline constexpr double kFlattestFold = 0.3;
 ///     (|d|^2 - 2 fold g + fold^2) / (2 compliance),   g = d . n,   n = N / |N|,
 ///
 /// that of |d - fold n|: a fold to the other side is none to this one.
+///
+/// Where faces lie nearly on each other n falls to nothing. So a fold at rest does not get there:
+/// it would take more and more to press it flat. A hinge that yields does get there, since then its
+/// rest is as flat. There n is along d, on the side on which it is, and does not turn with the
+/// faces.
 struct Hinge {
   kernels::Vector d, edge, across;  // d, P and Q
   kernels::Vector normal;           // n
   double size;                      // m, the divisor of N
   double g;
-  bool is_flat;  // its faces lie nearly on each other, and size is kFlattestFold |P| |d|
+  bool is_flat;             // its faces lie nearly on each other, and size is kFlattestFold |P| |d|
+  bool is_pressed = false;  // and it yields
 };
 template <class Places>
 Hinge hinge_of(const BendingElement& e, const Places& x) {
@@ -145,7 +152,23 @@ Hinge hinge_of(const BendingElement& e, const Places& x) {
   h.size = std::max(full, least);
   if (h.size > 0) h.normal = (1 / h.size) * normal;
   h.g = dot(h.d, h.normal);
+  h.is_pressed = h.is_flat && e.yields;
+  if (h.is_pressed) h.g = std::copysign(length(h.d), h.g);
   return h;
+}
+
+/// rad, between the faces of a hinge, from -pi to pi; 0: flat. Since d is 2 r sin(angle / 2) long,
+/// and Q across the edge 2 r cos(angle / 2), with r the reach of both faces.
+inline double angle_of(const Hinge& h) {
+  const double edge = length(h.edge);
+  return edge > 0 ? 2 * std::atan2(h.g, h.size * length(h.normal) / edge) : 0;
+}
+
+/// m, the fold of a hinge that rests at this angle. arm: r, d per radian.
+inline double fold_of(double arm, double angle) { return 2 * arm * std::sin(0.5 * angle); }
+/// The inverse.
+inline double angle_of_fold(double arm, double fold) {
+  return 2 * std::asin(std::clamp(0.5 * fold / arm, -1.0, 1.0));
 }
 
 /// The forces on the particles of an element.
@@ -158,6 +181,10 @@ using Pulls = std::array<kernels::Vector, 4>;
 /// a share. softness: compliance / W of the element, over what is just resolved.
 inline Pulls pulls_of(const Hinge& h, const BendingElement& e, double softness) {
   const auto& w = e.weights;
+  if (h.is_pressed) {
+    const kernels::Vector of_d = (e.fold / h.g - 1) * h.d;
+    return {w[0] * of_d, w[1] * of_d, w[2] * of_d, w[3] * of_d};
+  }
   kernels::Vector by_d = h.normal, by_normal = h.d, along{0, 0, 0};
   if (h.is_flat) {
     by_d = by_d - h.g / dot(h.d, h.d) * h.d;

@@ -16,6 +16,7 @@
 #include <limits>
 
 #include "kernels/reference/bending.h"
+#include "kernels/simd/in_rows.h"
 #include "kernels/simd/quads.h"
 
 namespace weft::simd {
@@ -178,7 +179,8 @@ template <bool kFour>
 struct Hinge {
   FloatVector d, edge, across, normal;
   Floats fold, reciprocal, g;
-  decltype(Floats() < Floats()) is_flat;
+  decltype(Floats() < Floats()) is_flat, is_pressed;
+  bool yields;
 
   template <bool kArms>
   [[gnu::always_inline]] Hinge(const Bending& b, std::size_t block, std::uint32_t lane,
@@ -187,7 +189,8 @@ struct Hinge {
         edge(Floats(-1.f) * (load_span(b.spans.along[block], lane) + at.along())),
         across(load_span(b.spans.sides[block], lane) + at.sides(b.blocks[block], lane)),
         normal(cross(edge, across)),
-        fold(load(b.folds[block].fold + lane)) {
+        fold(load(b.folds[block].fold + lane)),
+        yields(b.yields) {
     const Floats full = xsimd::sqrt(dot(normal, normal)),
                  least = Floats(static_cast<float>(reference::kFlattestFold)) *
                          xsimd::sqrt(dot(edge, edge) * dot(d, d));
@@ -195,6 +198,10 @@ struct Hinge {
     reciprocal = Floats(1.f) / xsimd::max(xsimd::max(full, least), tiny());
     normal = reciprocal * normal;
     g = dot(d, normal);
+    if (!yields) return;
+    is_pressed = is_flat & (load(b.folds[block].yields + lane) > Floats(0.5f));
+    const Floats size = xsimd::sqrt(dot(d, d));
+    g = xsimd::select(is_pressed, xsimd::select(g < Floats(0.f), Floats(0.f) - size, size), g);
   }
   static Floats tiny() { return Floats(std::numeric_limits<float>::min()); }
 
@@ -214,10 +221,11 @@ struct Hinge {
         fused(Floats(4.f) / xsimd::max(squares, tiny()), dot(across, across), dot(edge, edge));
     const Floats of_turning = (over * sides) * over;
     const Floats softness = Floats(resolved) * load(block.softness + lane);
-    const Floats turning =
-        part * xsimd::min(Floats(1.f), softness / xsimd::max(of_turning, tiny()));
-    const FloatVector by_d = fused_from(of_flat / xsimd::max(dot(d, d), tiny()), d, normal);
+    Floats turning = part * xsimd::min(Floats(1.f), softness / xsimd::max(of_turning, tiny()));
+    if (yields) turning = xsimd::select(is_pressed, none, turning);
+    FloatVector by_d = fused_from(of_flat / xsimd::max(dot(d, d), tiny()), d, normal);
     const FloatVector by_normal = reciprocal * fused_from(of_other, normal, d);
+    if (yields) by_d = select(is_pressed, (g / xsimd::max(g * g, tiny())) * d, by_d);
     const FloatVector of_d = fused_from(stiffness, bent, fused(part, by_d, damping));
     const FloatVector of_across = turning * cross(by_normal, edge);
     const Floats along = of_flat / xsimd::max(dot(edge, edge), tiny());

@@ -99,9 +99,11 @@ struct alignas(64) BendingBlock {
   float stiffness[kernels::kLanes];  // k = 1 / compliance, N/m
   float softness[kernels::kLanes];   // compliance / W, W = sum of w_i c_i^2, s^2
 };
-/// By how much hinges of four particles are folded at rest, m.
+/// By how much hinges of four particles are folded at rest, m, and which of them may yield: 1, or
+/// 0.
 struct alignas(64) BendingFolds {
   float fold[kernels::kLanes];
+  float yields[kernels::kLanes];
 };
 /// Per block, what is measured of the base. Arms serve damping, the first of them and `sides`
 /// hinges that are folded at rest: without these they are null.
@@ -118,6 +120,7 @@ struct Bending {
   BendingSpans spans;
   const BendingFolds* folds = nullptr;  // per block; null: there are none
   bool curved = false;                  // a rest is not 0
+  bool yields = false;                  // a hinge may yield
   float damping = 0;                    // tau / h
   float resolved = 0;  // 1/s^2: what is stiffer has a softness of less than 1 / this
 };

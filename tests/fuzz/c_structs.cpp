@@ -48,6 +48,9 @@ void draw_fabric(Arrays& arrays, weft_scene& scene) {
   scene.bending_rests = arrays.optional_numbers(scene.bending_count, 0);
   scene.bending_compliances = arrays.numbers(scene.bending_count, 1);
   scene.bending_folds = arrays.optional_numbers(scene.bending_count, 0);
+  scene.bending_yields = arrays.optional_numbers(scene.bending_count, 0.1);
+  scene.bending_hardenings = arrays.optional_numbers(scene.bending_count, 0.1);
+  scene.bending_arms = arrays.optional_numbers(scene.bending_count, 1);
   scene.surface_count = drawing.below(6);
   scene.surface_triangles = arrays.indices(3 * scene.surface_count, scene.particle_count);
   scene.air_triangle_count = drawing.below(4);

@@ -167,6 +167,35 @@ void add_fabric(SceneDescription& scene, Random& random) {
   }
 }
 
+/// Hinges between triangles of fabric that share an edge, some folded at rest, which yield.
+void add_hinges(SceneDescription& scene, Random& random) {
+  const auto far_corner = [](const MembraneElement& e, std::uint32_t a, std::uint32_t b) {
+    for (const std::uint32_t p : e.particles)
+      if (p != a && p != b) return p;
+    return kNoIndex;
+  };
+  const double unit = shortest(scene);
+  for (std::size_t i = 0; i < scene.membrane.size(); ++i) {
+    const std::size_t j = random.below(static_cast<std::uint32_t>(scene.membrane.size()));
+    std::vector<std::uint32_t> shared;
+    for (const std::uint32_t p : scene.membrane[i].particles)
+      if (std::ranges::count(scene.membrane[j].particles, p) > 0) shared.push_back(p);
+    if (i == j || shared.size() != 2) continue;
+    const std::uint32_t one = far_corner(scene.membrane[i], shared[0], shared[1]);
+    const std::uint32_t two = far_corner(scene.membrane[j], shared[0], shared[1]);
+    const double share = random.between(0, 2);
+    BendingElement e{.particles = {shared[0], shared[1], one, two},
+                     .weights = {share - 2, -share, 1, 1},
+                     .compliance = decades(-4, 4, random)};
+    if (by_chance(0.3, random)) e.fold = random.between(-1, 1) * unit;
+    e.arm = random.between(0.6, 2) * unit;
+    e.yield = decades(-3, 0.5, random) * unit;
+    if (by_chance(0.5, random)) e.hardening = decades(-2, 1, random);
+    scene.bending.push_back(e);
+    if (by_chance(0.5, random)) scene.bending.push_back(e);
+  }
+}
+
 void draw_motion(RandomCase& c, const Ranges& ranges, Random& random) {
   const double way = ranges.reach * shortest(c.scene);
   c.dt = decades(-4, -1.5, random);
@@ -356,6 +385,10 @@ RandomCase fabric_case(std::uint32_t seed) {
   RandomCase c = random.below(2) == 0 ? random_case(seed) : softened_case(seed);
   c.shape += " with fabric";
   add_fabric(c.scene, random);
+  if (Random yielding(seed + 2'000'003); yielding.below(3) == 0) {
+    c.shape += " that yields";
+    add_hinges(c.scene, yielding);
+  }
   if (random.below(2) == 0) c.scene.constraints.clear();
   if (random.below(3) == 0) c.scene.damping.stretch = decades(-4, 0, random);
   c.settings.solver = random.below(4) == 0 ? Solver::automatic : Solver::small_steps;

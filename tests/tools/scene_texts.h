@@ -29,6 +29,9 @@ inline void check_same_material(const SceneDescription& a, const SceneDescriptio
     CHECK(a.bending[i].weights == b.bending[i].weights);
     CHECK(a.bending[i].rest == b.bending[i].rest);
     CHECK(a.bending[i].fold == b.bending[i].fold);
+    CHECK(a.bending[i].yield == b.bending[i].yield);
+    CHECK(a.bending[i].hardening == b.bending[i].hardening);
+    CHECK(a.bending[i].arm == b.bending[i].arm);
     CHECK(a.bending[i].compliance == b.bending[i].compliance);
   }
   CHECK(a.damping.stretch == b.damping.stretch);

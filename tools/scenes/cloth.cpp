@@ -123,6 +123,8 @@ Result<Scene> of_material(const Layout& layout, const Options& options) {
   MeshDescription mesh =
       tools::describe_mesh(layout.rest.empty() ? layout.start : layout.rest, layout.faces);
   mesh.material = options.material;
+  if (layout.yield && std::isinf(mesh.material->bending_yield))
+    mesh.material->bending_yield = *layout.yield;
   mesh.ropes = ropes_of(options);
   mesh.seams = layout.seams;
   auto made = cloth_from_mesh(mesh);

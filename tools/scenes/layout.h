@@ -49,6 +49,7 @@ struct Layout {
   std::vector<tools::SceneBody> bodies;
   std::vector<tools::PinMove> moves;  ///< of vertices in place of particles
   bool touches_itself = false;        ///< it has self-contact
+  std::optional<double> yield;        ///< 1/m, of a material that would not keep a crease
 };
 
 }  // namespace weft::scenes

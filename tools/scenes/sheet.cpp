@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 namespace weft::scenes {
 
@@ -43,6 +44,16 @@ Layout sheet_on_table(int size, double friction) {
                            .position = {kCovered - kTable / 2, -kTable / 2, 0.5},
                            .friction = friction});
   return layout;
+}
+
+Vec3 zigzag(double s, double straight, double radius) {
+  const double turn = std::numbers::pi * radius, part = straight + turn;
+  const int layer = std::min(static_cast<int>(s / part), 3);
+  const double along = s - layer * part, side = layer % 2 == 0 ? 1 : -1, base = 2 * radius * layer;
+  const double end = straight / 2;  // of the straight part, from the middle
+  if (along <= straight || layer == 3) return {side * (along - end), base, 0};
+  const double angle = (along - straight) / radius;
+  return {side * (end + radius * std::sin(angle)), base + radius * (1 - std::cos(angle)), 0};
 }
 
 void add_floor(double height, Layout& layout) {

@@ -51,6 +51,10 @@ Layout hanging_sheet(int size);
 /// A level sheet on the top of a box that carries the first 0.4 m of it.
 Layout sheet_on_table(int size, double friction);
 
+/// Straight parts to and fro, four at most and one over another, joined by half circles: the point
+/// after the length `s`, in the plane of x and y.
+Vec3 zigzag(double s, double straight, double radius);
+
 void add_floor(double height, Layout& layout);
 
 /// So many points along a curve in the plane of x and y, each as far from the one before.

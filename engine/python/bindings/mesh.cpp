@@ -26,7 +26,14 @@ void add_materials(py::module_& m) {
       .field("drag", &Material::drag, "as Air.drag")
       .field("lift", &Material::lift, "as Air.lift")
       .field("ram", &Material::ram, "as Air.ram")
-      .field("strength", &Material::strength, "N/m, at which it tears; infinite: it does not");
+      .field("strength", &Material::strength, "N/m, at which it tears; infinite: it does not")
+      .field("bending_yield", &Material::bending_yield,
+             "1/m, beyond which it keeps a crease; infinite: it does not")
+      .field("bending_hardening", &Material::bending_hardening,
+             "of the moment beyond the yield, over that of bending")
+      .field("bending_friction", &Material::bending_friction,
+             "N, half of the width of the loop of moment against curvature")
+      .field("bending_slip", &Material::bending_slip, "1/m, that brings friction to all of it");
   m.def(
       "check_material", [](const Material& given) { check(check_material(given)); },
       py::arg("material"), "Raises Error with the field and the value that are refused.");

@@ -33,15 +33,19 @@ py::array array_from(py::handle value, const std::string& field) {
 }
 
 /// Rows of a list, each with all fields.
-py::object whole_rows(py::handle value, const py::dtype& type, const py::bytes& defaults) {
+py::object whole_rows(py::handle value, const py::dtype& type, const RecordDefaults& defaults) {
   if (!py::isinstance<py::list>(value)) return py::reinterpret_borrow<py::object>(value);
-  const py::object one = py::module_::import("numpy").attr("frombuffer")(defaults, type);
+  const py::object one = py::module_::import("numpy").attr("frombuffer")(defaults.bytes, type);
   const py::tuple fields = one[py::int_(0)].attr("item")();
+  const std::size_t least = fields.size() - defaults.optional;
   py::list rows;
   for (const py::handle row : value) {
     const py::object its = py::reinterpret_borrow<py::object>(row);
-    const bool is_short = py::isinstance<py::tuple>(row) && py::len(row) + 1 == fields.size();
-    rows.append(is_short ? its + py::make_tuple(fields[fields.size() - 1]) : its);
+    const std::size_t given = py::isinstance<py::tuple>(row) ? py::len(row) : fields.size();
+    const bool is_short = given >= least && given < fields.size();
+    const py::object others = fields.attr("__getitem__")(
+        py::slice(static_cast<py::ssize_t>(given), static_cast<py::ssize_t>(fields.size()), 1));
+    rows.append(is_short ? its + others : its);
   }
   return rows;
 }
@@ -66,7 +70,7 @@ std::vector<std::uint32_t> index_rows(py::handle value, const std::string& field
 }
 
 py::array record_array(py::handle value, const py::dtype& type, const std::string& field,
-                       py::bytes defaults) {
+                       const RecordDefaults& defaults) {
   py::array array;
   try {
     array = py::module_::import("numpy").attr("ascontiguousarray")(

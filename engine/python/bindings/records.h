@@ -58,17 +58,29 @@ py::dtype record_type<BodyContact>();
 template <>
 py::dtype record_type<Torn>();
 
+struct RecordDefaults {
+  py::bytes bytes;       ///< of one record
+  std::size_t optional;  ///< so many of its last fields may be left out
+};
+
+/// Fields at the end may be left out as in a scene file.
+template <class T>
+RecordDefaults record_defaults() {
+  const T one{};
+  std::size_t optional = 0;
+  for_each_element_field<T>(
+      [&](const auto& field) { optional = field.given == weft::Given::maybe ? optional + 1 : 0; });
+  return {py::bytes(reinterpret_cast<const char*>(&one), sizeof(T)), optional};
+}
+
 /// An array (n) of the type, as C has it in memory; from records, or a list of tuples.
-/// defaults: of one record, as bytes. Rows that are tuples may leave out the last field.
 py::array record_array(py::handle value, const py::dtype& type, const std::string& field,
-                       py::bytes defaults);
+                       const RecordDefaults& defaults);
 
 template <class T>
 std::vector<T> records(py::handle value, const std::string& field) {
   static_assert(std::is_trivially_copyable_v<T>);
-  const T one{};
-  const py::bytes defaults(reinterpret_cast<const char*>(&one), sizeof(T));
-  const py::array array = record_array(value, record_type<T>(), field, defaults);
+  const py::array array = record_array(value, record_type<T>(), field, record_defaults<T>());
   std::vector<T> out(static_cast<std::size_t>(array.size()));
   if (!out.empty())
     std::memcpy(static_cast<void*>(out.data()), array.data(), out.size() * sizeof(T));

@@ -265,6 +265,10 @@ class Material:
     lift: float
     ram: float
     strength: float
+    bending_yield: float
+    bending_hardening: float
+    bending_friction: float
+    bending_slip: float
 
 
 class Ropes:

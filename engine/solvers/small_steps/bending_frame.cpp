@@ -57,7 +57,8 @@ std::optional<BendingStep> BendingFrame::next(double give) {
   if (rows_.empty()) return {};
   const int k = done_++;
   const std::int64_t group = ((k + 1) * std::int64_t{groups_} - 1) / substeps_;
-  if (k != solved_in(group)) return {};
+  is_solved_now_ = k == solved_in(group);
+  if (!is_solved_now_) return {};
   return step(give, 0.5 * (solved_in(groups_ + group + 1) - solved_in(groups_ + group - 1)));
 }
 

@@ -47,6 +47,8 @@ class BendingFrame {
   void begin(const FramePlan& plan, double weight);
   /// The step of the next substep, with its give; none where its group is solved in another.
   std::optional<BendingStep> next(double give);
+  /// Whether that of the present substep is.
+  bool is_solved_now() const { return is_solved_now_; }
   /// The step of a whole group of substeps as most are.
   BendingStep usual() const { return step(give_, longest_); }
 
@@ -74,7 +76,7 @@ class BendingFrame {
   const double mean_;       // 1/s^2, of K_ii / m_i
   const Scheme scheme_;
   const bool is_timed_;  // the error of motion is measured
-  bool is_factored_ = false;
+  bool is_factored_ = false, is_solved_now_ = false;
   double weight_ = 0, damping_ = 0, give_ = 1, omega_ = 1;
   int substeps_ = 0, done_ = 0, groups_ = 1, longest_ = 1;
 };

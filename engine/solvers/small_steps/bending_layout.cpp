@@ -72,8 +72,9 @@ class BendingLayoutBuilder {
   void add_folds(std::span<const std::uint32_t> elements) {
     simd::BendingFolds& folds = layout_.folds.emplace_back();
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-      folds.fold[lane] =
-          lane < elements.size() ? static_cast<float>(store_.fold[elements[lane]]) : 0;
+      const bool is_there = lane < elements.size();
+      folds.fold[lane] = is_there ? static_cast<float>(store_.fold[elements[lane]]) : 0;
+      folds.yields[lane] = is_there && store_.yields(elements[lane]) ? 1 : 0;
     }
   }
   void fill(simd::BendingBlock& block, std::uint32_t lane, std::uint32_t i) {
@@ -94,8 +95,16 @@ class BendingLayoutBuilder {
   const Model& model_;
   const BendingStore& store_;
   BendingLayout& layout_;
-  const bool is_folded_ = store_.is_folded();
+  const bool is_folded_ = store_.is_folded() || store_.may_yield();
 };
+
+std::vector<std::uint32_t> places_of(const std::vector<std::uint32_t>& elements,
+                                     std::size_t count) {
+  std::vector<std::uint32_t> places(count, kNoIndex);
+  for (std::uint32_t at = 0; at < elements.size(); ++at)
+    if (elements[at] != kNoIndex) places[elements[at]] = at;
+  return places;
+}
 
 }  // namespace
 
@@ -109,12 +118,14 @@ BendingLayout make_bending_layout(const Model& model) {
   layout.element.shrink_to_fit();
   layout.folds.shrink_to_fit();
   layout.rows = make_bending_rows(model);
+  layout.creases = make_crease_layout(model);
+  if (model.bending.may_yield()) layout.place = places_of(layout.element, model.bending.size());
   return layout;
 }
 
 std::size_t BendingLayout::bytes() const {
   return bytes_of(blocks) + bytes_of(element) + bytes_of(batches) + bytes_of(beside) +
-         bytes_of(folds) + rows.bytes();
+         bytes_of(folds) + bytes_of(place) + creases.bytes() + rows.bytes();
 }
 
 }  // namespace weft

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/solvers/small_steps/bending_rows.h"
+#include "engine/solvers/small_steps/creases.h"
 #include "kernels/simd/table.h"
 
 namespace weft {
@@ -24,7 +25,9 @@ struct BendingLayout {
   std::vector<std::uint32_t> element;  // per block and lane: in Model::bending, or kNoIndex
   std::vector<BendingBatch> batches;
   std::vector<std::optional<std::uint32_t>> beside;  // per element in Model::bending: a slot
-  std::vector<simd::BendingFolds> folds;             // per block; empty: no hinge is folded at rest
+  std::vector<simd::BendingFolds> folds;  // per block; empty: no hinge is folded at rest, or yields
+  std::vector<std::uint32_t> place;       // per element, if some yield: index in `element`
+  CreaseLayout creases;
   BendingRows rows;
   bool curved = false;  // a rest is not 0
 

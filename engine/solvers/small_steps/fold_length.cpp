@@ -25,12 +25,13 @@ double sine_of(const reference::BendingElement& e, kernels::VectorsView x) {
 
 }  // namespace
 
-double substep_length_for_folds(const Model& model, kernels::VectorsView x) {
+double substep_length_for_folds(const Model& model, std::span<const Crease> creases,
+                                kernels::VectorsView x) {
   double least = std::numeric_limits<double>::infinity();
   if (model.small_steps().bending.folds.empty()) return least;
   for (std::size_t i = 0; i < model.bending.size(); ++i) {
-    if (model.bending.fold[i] == 0) continue;
-    const reference::BendingElement e = element_of(model.bending, i);
+    const reference::BendingElement e = element_of(model.bending, i, creases);
+    if (e.fold == 0) continue;
     const double w = inverse_mass_of(e, model.inverse_mass.data()), sine = sine_of(e, x);
     if (w > 0) least = std::min(least, std::sqrt(e.compliance / w) / (sine * sine));
   }

@@ -10,12 +10,17 @@
 /// where s is the sine of half the angle at rest.
 #pragma once
 
+#include <span>
+
+#include "engine/model/bending_element.h"
 #include "engine/model/model.h"
 #include "kernels/vectors.h"
 
 namespace weft {
 
-/// s; infinite without folds. x: where particles are, by their slots.
-double substep_length_for_folds(const Model& model, kernels::VectorsView x);
+/// s; infinite without folds. creases: as they are now, of all elements of the description. x:
+/// where particles are, by their slots.
+double substep_length_for_folds(const Model& model, std::span<const Crease> creases,
+                                kernels::VectorsView x);
 
 }  // namespace weft

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "engine/contact/interval.h"
+#include "engine/model/bending_element.h"
 #include "engine/solvers/small_steps/anchor_travel.h"
 #include "engine/solvers/small_steps/seams.h"
 #include "engine/solvers/small_steps/sliders.h"
@@ -24,6 +25,7 @@ struct FramePlan {
   AnchorTravel anchors{};
   std::span<const SeamState> seams{};
   std::span<const reference::RailPlace> sliders{};
+  std::span<const Crease> creases{};
   std::span<const TravellingBody> bodies{};
   bool bodies_move = false;     // in this step, or in the last, or there are other ones
   bool bodies_are_new = false;  // there are other ones, or one was put elsewhere

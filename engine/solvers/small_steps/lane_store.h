@@ -103,6 +103,9 @@ class LaneStore {
   double largest_move(Team& team);
   double bending_energy(double give, Team& team) { return bending_.energy(u_.data(), give, team); }
   double bending_error() const { return bending_.error(); }
+  bool has_bent() const { return bending_.has_bent(); }
+  double resolved_bending(double give) const { return bending_.resolved(give); }
+  void set_fold(std::uint32_t element, double fold) { bending_.set_fold(element, fold); }
   double rounding_error(double h) const;
 
   double past_h() const { return past_.h; }

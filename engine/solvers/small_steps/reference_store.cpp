@@ -493,8 +493,8 @@ void ReferenceStore::turn(const Turn& by) {
 }
 
 std::size_t ReferenceStore::bytes() const {
-  return 10 * x_.bytes() + bending_.bytes() + bytes_of(out_) + bytes_of(multiplier_) +
-         bytes_of(membrane_multiplier_) + aside_.bytes() + at_hand_.bytes();
+  return 10 * x_.bytes() + bending_.bytes() + bytes_of(folds_) + bytes_of(out_) +
+         bytes_of(multiplier_) + bytes_of(membrane_multiplier_) + aside_.bytes() + at_hand_.bytes();
 }
 
 }  // namespace weft

@@ -99,6 +99,9 @@ class ReferenceStore {
   double largest_move(Team& team);
   double bending_energy(double give, Team& team);
   double bending_error() const { return bending_error_; }
+  bool has_bent() const { return bending_frame_.is_solved_now(); }
+  double resolved_bending(double give) const { return bending_frame_.resolved(give); }
+  void set_fold(std::uint32_t element, double fold) { folds_[element] = fold; }
   double rounding_error(double) const { return 0; }
 
   double past_h() const { return past_.h; }
@@ -118,6 +121,7 @@ class ReferenceStore {
   reference::BendingElement element(std::uint32_t i) const {
     reference::BendingElement element = element_of(model_.bending, i);
     element.beside = layout_.bending.beside[i];
+    if (element.yields) element.fold = folds_[i];
     return element;
   }
   /// Relaxes the errors l^2 / rest^2 - 1.
@@ -135,6 +139,8 @@ class ReferenceStore {
   BendingFrame bending_frame_;
   BendingSystem<double> bending_;
   double give_ = 0, bending_error_ = 0;  // as SimdBending has them
+  std::vector<double> folds_ =           // m, per element, if some yield
+      model_.bending.may_yield() ? model_.bending.fold : std::vector<double>{};
   AnchorClock anchors_;
   ReferenceBodies bodies_;
   Past past_;

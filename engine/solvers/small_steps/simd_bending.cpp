@@ -35,6 +35,13 @@ SimdBending::SimdBending(const Model& model, const Settings& settings, const sim
   if (is_damped || is_folded) along_.resize(layout_.blocks.size());
   if (is_damped) across_.resize(layout_.blocks.size());
   if (is_folded) sides_.resize(layout_.blocks.size());
+  if (model.bending.may_yield()) folds_ = layout_.folds;
+}
+
+void SimdBending::set_fold(std::uint32_t element, double fold) {
+  const std::uint32_t at = layout_.place[element];
+  if (at == kNoIndex) return;
+  folds_[at / kernels::kLanes].fold[at % kernels::kLanes] = static_cast<float>(fold);
 }
 
 template <class Work>
@@ -88,8 +95,11 @@ simd::Bending SimdBending::arrays(const float* u) {
   return {.u = u,
           .blocks = layout_.blocks.data(),
           .spans = spans(),
-          .folds = layout_.folds.empty() ? nullptr : layout_.folds.data(),
-          .curved = layout_.curved};
+          .folds = !folds_.empty()          ? folds_.data()
+                   : !layout_.folds.empty() ? layout_.folds.data()
+                                            : nullptr,
+          .curved = layout_.curved,
+          .yields = !folds_.empty()};
 }
 
 /// Into the residual of soft_.

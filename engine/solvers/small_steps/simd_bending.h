@@ -20,6 +20,11 @@ class SimdBending {
   void begin(const FramePlan& plan, const float* acceleration, bool goes_on);
   /// Measures a new base.
   void measure_base(const float* base, Team& team);
+  /// m, of a hinge that yields, in place of that of the model.
+  void set_fold(std::uint32_t element, double fold);
+  /// Whether it has bent in the present substep.
+  bool has_bent() const { return frame_.is_solved_now(); }
+  double resolved(double give) const { return frame_.resolved(give); }
   /// After the prediction of a substep whose positions move by give w f. start: where it began.
   void bend(float* u, const float* start, double give, Team& team);
   /// J, with positions at base + u, of substeps of `give`.
@@ -53,6 +58,7 @@ class SimdBending {
   BendingSystem<double> stiff_;
   double give_ = 0;  // s^2, of the last solution in the frame; 0: there was none
   double error_ = 0;
+  std::vector<simd::BendingFolds> folds_;                   // of now, if some yield
   kernels::AlignedVector<simd::EdgeSpans> spans_;           // d of the base
   kernels::AlignedVector<simd::EdgeSpans> along_, across_;  // arms of the base, for damping
   kernels::AlignedVector<simd::EdgeSpans> sides_;           // of the base, for folded hinges

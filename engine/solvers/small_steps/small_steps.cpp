@@ -24,6 +24,7 @@ class StoredSmallSteps final : public SmallSteps {
         now_{model, settings},
         seams_(model),
         sliders_(model, settings.contact_tolerance),
+        creases_(model, layout_.bending.creases),
         carried_(model),
         linkage_(model, layout_.linkage),
         store_(now_, table) {
@@ -47,6 +48,7 @@ class StoredSmallSteps final : public SmallSteps {
     departures_.begin();
     store_.begin(x, v, plan, team);
     store_.accelerate(gravity, force);
+    creases_.begin(plan.creases, [&](auto... fold) { store_.set_fold(fold...); });
     store_.begin_bending(plan);
     store_.begin_past(team);
     begin_bodies(plan, team);
@@ -117,6 +119,11 @@ class StoredSmallSteps final : public SmallSteps {
                          now_.touched.push_back(b);
                        });
   }
+  double yield(double give) override {
+    if (creases_.empty() || !store_.has_bent()) return 0;
+    return creases_.yield(store_.points(false), store_.resolved_bending(give),
+                          [&](auto... fold) { store_.set_fold(fold...); });
+  }
   /// Ends contacts with meshes, where their interval is over.
   bool end_contacts(Team& team) override {
     if (!store_.bodies().has_meshes()) return false;
@@ -150,6 +157,7 @@ class StoredSmallSteps final : public SmallSteps {
   }
   const SeamThreads& seams() const override { return seams_; }
   const SliderThreads& sliders() const override { return sliders_; }
+  const CreaseThreads& creases() const override { return creases_; }
   void report_bodies(BodyReport& report) override { store_.bodies().sum(report); }
   void read_contacts(std::vector<BodyTouch>& contacts) override {
     if (store_.bodies().empty()) return;
@@ -184,8 +192,8 @@ class StoredSmallSteps final : public SmallSteps {
   double take_contact_visits() override { return store_.bodies().take_visits(); }
   ContactMs take_contact_ms() override { return contact_times_.take(); }
   std::size_t bytes() const override {
-    return now_.bytes() + seams_.bytes() + sliders_.bytes() + carried_.bytes() + linkage_.bytes() +
-           store_.bytes();
+    return now_.bytes() + seams_.bytes() + sliders_.bytes() + creases_.bytes() + carried_.bytes() +
+           linkage_.bytes() + store_.bytes();
   }
 
  private:
@@ -327,6 +335,7 @@ class StoredSmallSteps final : public SmallSteps {
   Substep now_;
   SeamThreads seams_;
   SliderThreads sliders_;
+  CreaseThreads creases_;
   Departures departures_;
   ContactTimes contact_times_;
   CarriedForces carried_;

@@ -14,6 +14,7 @@
 #include "engine/saving/archive.h"
 #include "engine/solvers/small_steps/body_report.h"
 #include "engine/solvers/small_steps/carried.h"
+#include "engine/solvers/small_steps/creases.h"
 #include "engine/solvers/small_steps/frame_to_do.h"
 #include "engine/solvers/small_steps/local_passes.h"
 #include "engine/solvers/small_steps/seams.h"
@@ -64,9 +65,13 @@ class SmallSteps {
                            Team& team) = 0;
   /// After each substep's repair: which seams it has closed.
   virtual void end_seams() = 0;
+  /// Likewise of hinges that yield, where bending was solved in it, in substeps of `give` as
+  /// bending_energy() has it. Returns the energy that was lost, J.
+  virtual double yield(double give) = 0;
   /// Their state after the frame, and their work (J).
   virtual const SeamThreads& seams() const = 0;
   virtual const SliderThreads& sliders() const = 0;
+  virtual const CreaseThreads& creases() const = 0;
   /// The effects of contacts with bodies in the frame.
   virtual void report_bodies(BodyReport& report) = 0;
   /// m, by which a particle is under the surface of a body.

@@ -72,6 +72,11 @@ TEST_CASE("a material's errors name the field and the value") {
   CHECK(error_with(&Material::drag, -1).starts_with("material.drag: "));
   CHECK(error_with(&Material::lift, -1).starts_with("material.lift: "));
   CHECK(error_with(&Material::ram, -1).starts_with("material.ram: "));
+  CHECK(error_with(&Material::bending_yield, 0) ==
+        "material.bending_yield: must be greater than 0, or infinite (0)");
+  CHECK(error_with(&Material::bending_hardening, -1).starts_with("material.bending_hardening: "));
+  CHECK(error_with(&Material::bending_friction, nan).starts_with("material.bending_friction: "));
+  CHECK(error_with(&Material::bending_slip, 0).starts_with("material.bending_slip: "));
 }
 
 TEST_CASE("thickness and friction of layers are the material's") {

@@ -67,7 +67,8 @@ bool same(const Constraint& a, const Constraint& b) {
 }
 bool same(const BendingElement& a, const BendingElement& b) {
   return a.particles == b.particles && a.weights == b.weights && a.rest == b.rest &&
-         a.compliance == b.compliance && a.fold == b.fold;
+         a.compliance == b.compliance && a.fold == b.fold && a.yield == b.yield &&
+         a.hardening == b.hardening && a.arm == b.arm;
 }
 bool same(const Anchor& a, const Anchor& b) {
   return a.particle == b.particle && same(a.point, b.point) && same(a.normal, b.normal) &&

@@ -73,6 +73,14 @@ class Scenes(unittest.TestCase):
         seams, anchors = weft.records(weft.Seam, 2), weft.records(weft.Anchor, 0)
         self.assertEqual((seams["time"][1], seams["strength"][1], anchors.shape), (1, np.inf, (0,)))
 
+    def test_rows_may_leave_out_what_scene_files_may(self):
+        link = weft.SceneDescription(constraints=[(0, 1, 2.0)]).constraints
+        self.assertEqual(link.tolist(), [(0, 1, 2, 0, 0, np.inf)])
+        hinge = ([0, 1, 2, 3], [-1, -1, 1, 1], 0, 2.0)
+        bends = weft.SceneDescription(bending=[hinge + (0.1, 0.2), hinge + (0,) * 4]).bending
+        self.assertEqual(bends["fold"].tolist(), [0.1, 0])
+        self.assertEqual(bends["yield"].tolist(), [0.2, 0])
+
     def test_one_fixed_particle_is_moved(self):
         made = weft.cloth_from_mesh(sheet(3))
         made.scene.fixed = [4]
@@ -113,6 +121,8 @@ class Refused(unittest.TestCase):
         self.refuses("constraints: not records", weft.SceneDescription, constraints=[(1, 2)])
         self.refuses(r"constraints\[0\].kind: 2", weft.SceneDescription, constraints=[(0, 1, 1.0, 2, 0)])
         self.refuses("faces", weft.MeshDescription().set_faces, [1, 2, 3])
+        hinge = ([0, 1, 2, 3], [-1, -1, 1, 1], 0)
+        self.refuses("bending: not records", weft.SceneDescription, bending=[hinge])
         links = weft.records(weft.Constraint, 2)
         links["strength"] = 5, 0
         self.refuses(r"constraints\[1\].strength: 0 ", weft.SceneDescription, constraints=links)

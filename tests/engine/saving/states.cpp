@@ -471,12 +471,12 @@ TEST_CASE("the format is the one of its version") {
                 static_cast<unsigned long long>(checksum(state)), model.size(),
                 static_cast<unsigned long long>(checksum(model)));
   }
-  CHECK(state[8] == std::byte{10});
-  CHECK(model[8] == std::byte{47});
-  CHECK(state.size() == 11192);
-  CHECK(checksum(state) == 0x8dd708c377b041a5);
-  CHECK(model.size() == 796);
-  CHECK(checksum(model) == 0xc57e488cfcb3ec58);
+  CHECK(state[8] == std::byte{11});
+  CHECK(model[8] == std::byte{50});
+  CHECK(state.size() == 11200);
+  CHECK(checksum(state) == 0x33ed671382710115);
+  CHECK(model.size() == 820);
+  CHECK(checksum(model) == 0xb9d416b68377c552);
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ Scene layered(std::string_view name, int size = 20) {
 }
 
 TEST_CASE("scenes of layers have the self-contact of their material, others have none") {
-  for (const std::string_view name :
-       {"rings", "tunic", "stack", "fold", "curtain", "twist", "ribbon", "funnel", "outfit"}) {
+  for (const std::string_view name : {"rings", "tunic", "stack", "fold", "crease", "curtain",
+                                      "twist", "ribbon", "funnel", "outfit"}) {
     CAPTURE(name);
     const SelfContact contact = layered(name).description.self_contact;
     CHECK(contact.on);

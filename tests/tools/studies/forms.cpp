@@ -29,6 +29,9 @@ void check(const std::vector<Form>& forms) {
 TEST_CASE("what stretches and shears") { check(membrane_forms()); }
 TEST_CASE("what bends") { check(bending_forms()); }
 TEST_CASE("what is folded at rest") { check(fold_forms()); }
+TEST_CASE("what yields and rubs where it bends" * doctest::test_suite("slow")) {
+  check(crease_forms());
+}
 TEST_CASE("what a force or a moment bends by its end") { check(end_forms()); }
 TEST_CASE("a slit annular plate" * doctest::test_suite("slow")) { check(annulus_forms()); }
 TEST_CASE("strips of named fabrics") { check(fabric_forms()); }

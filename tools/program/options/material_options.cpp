@@ -32,7 +32,11 @@ constexpr Field kFields[] = {{"density", &Material::density},
                              {"drag", &Material::drag},
                              {"lift", &Material::lift},
                              {"ram", &Material::ram},
-                             {"strength", &Material::strength}};
+                             {"strength", &Material::strength},
+                             {"bending_yield", &Material::bending_yield},
+                             {"bending_hardening", &Material::bending_hardening},
+                             {"bending_friction", &Material::bending_friction},
+                             {"bending_slip", &Material::bending_slip}};
 
 struct Change {
   std::string_view option;
@@ -49,7 +53,13 @@ constexpr Change kChanges[] = {
      {&Material::damping_stretch, &Material::damping_bending}},
     {"--drag", &MaterialOptions::drag, {&Material::drag, &Material::drag}},
     {"--lift", &MaterialOptions::lift, {&Material::lift, &Material::lift}},
-    {"--strength", &MaterialOptions::strength, {&Material::strength, &Material::strength}}};
+    {"--strength", &MaterialOptions::strength, {&Material::strength, &Material::strength}},
+    {"--bend-yield",
+     &MaterialOptions::bend_yield,
+     {&Material::bending_yield, &Material::bending_yield}},
+    {"--bend-friction",
+     &MaterialOptions::bend_friction,
+     {&Material::bending_friction, &Material::bending_friction}}};
 
 std::string names_of_materials() {
   std::string names;
@@ -113,6 +123,10 @@ void add_material_options(Verb verb, MaterialOptions& options) {
   verb.option("--drag", options.drag, "material: drag of the air");
   verb.option("--lift", options.lift, "material: lift of the air");
   verb.option("--strength", options.strength, "material: N/m, at which it tears");
+  verb.option("--bend-yield", options.bend_yield,
+              "material: 1/m, the curvature beyond which it keeps a crease");
+  verb.option("--bend-friction", options.bend_friction,
+              "material: N, the friction of bending, half of Kawabata's 2HB");
   verb.option("--wind", options.wind, "with a material: x,y,z in m/s");
 }
 

@@ -17,7 +17,8 @@ struct MaterialOptions {
   std::optional<double> shear, bend, density;
   std::optional<double> damping;  ///< s, of stretch and bending
   std::optional<double> drag, lift, strength;
-  std::optional<std::string> wind;  ///< x,y,z in m/s
+  std::optional<double> bend_yield, bend_friction;  ///< 1/m; N
+  std::optional<std::string> wind;                  ///< x,y,z in m/s
 };
 
 void add_material_options(Verb verb, MaterialOptions& options);

@@ -1,7 +1,5 @@
 /// A sheet in four layers, like a letter: three half circles of a radius of 2 cm join them. It
 /// falls from 5 cm on a floor. It has self-contact.
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <vector>
@@ -11,17 +9,6 @@
 
 namespace weft::scenes::built_in {
 namespace {
-
-/// Straight parts to and fro, one over another, joined by half circles.
-Vec3 zigzag(double s, double straight, double radius) {
-  const double turn = std::numbers::pi * radius, part = straight + turn;
-  const int layer = std::min(static_cast<int>(s / part), 3);
-  const double along = s - layer * part, side = layer % 2 == 0 ? 1 : -1, base = 2 * radius * layer;
-  const double end = straight / 2;  // of the straight part, from the middle
-  if (along <= straight || layer == 3) return {side * (along - end), base, 0};
-  const double angle = (along - straight) / radius;
-  return {side * (end + radius * std::sin(angle)), base + radius * (1 - std::cos(angle)), 0};
-}
 
 Layout fold_layout(const Options& options) {
   constexpr double kRadius = 0.02, kHeight = 0.05;  // m

@@ -45,9 +45,9 @@ FormResult measure(const Form& form, int refinements) {
 std::vector<Form> all_forms() {
   std::vector<Form> all;
   for (std::vector<Form>& forms :
-       std::array{membrane_forms(), film_forms(), bending_forms(), fold_forms(), end_forms(),
-                  annulus_forms(), fabric_forms(), motion_forms(), body_forms(), layer_forms(),
-                  pressure_forms()})
+       std::array{membrane_forms(), film_forms(), bending_forms(), fold_forms(), crease_forms(),
+                  end_forms(), annulus_forms(), fabric_forms(), motion_forms(), body_forms(),
+                  layer_forms(), pressure_forms()})
     std::ranges::move(forms, std::back_inserter(all));
   return all;
 }

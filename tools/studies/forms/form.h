@@ -62,6 +62,7 @@ std::vector<Form> all_forms();
 std::vector<Form> membrane_forms();
 std::vector<Form> bending_forms();
 std::vector<Form> fold_forms();
+std::vector<Form> crease_forms();
 std::vector<Form> end_forms();
 std::vector<Form> annulus_forms();
 std::vector<Form> fabric_forms();

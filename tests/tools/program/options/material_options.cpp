@@ -15,7 +15,8 @@ TEST_CASE("a material file has the fields of a material by name") {
   const auto material = parse_material(
       R"({"density": 1, "thickness": 2, "warp": 3, "weft": 4, "shear": 5, "bending": 6,
           "damping_stretch": 7, "damping_bending": 8, "damping_motion": 9, "drag": 10, "lift": 11,
-          "friction": 12, "ram": 13})");
+          "friction": 12, "ram": 13, "strength": 14, "bending_yield": 15, "bending_hardening": 16,
+          "bending_friction": 17, "bending_slip": 18})");
   REQUIRE(material);
   const Material& m = material.value();
   CHECK(m.density == 1);
@@ -31,6 +32,11 @@ TEST_CASE("a material file has the fields of a material by name") {
   CHECK(m.lift == 11);
   CHECK(m.friction == 12);
   CHECK(m.ram == 13);
+  CHECK(m.strength == 14);
+  CHECK(m.bending_yield == 15);
+  CHECK(m.bending_hardening == 16);
+  CHECK(m.bending_friction == 17);
+  CHECK(m.bending_slip == 18);
   CHECK(parse_material("{}").value().friction == 0.3);
 }
 
@@ -66,12 +72,16 @@ TEST_CASE("options change a named material, or are one by themselves") {
   options.shear = 4;
   options.drag = 5;
   options.lift = 6;
+  options.bend_yield = 7;
+  options.bend_friction = 8;
   const Material own = *material_of(options).value();
   CHECK(own.weft == 10);
   CHECK(own.density == 2);
   CHECK(own.shear == 4);
   CHECK(own.drag == 5);
   CHECK(own.lift == 6);
+  CHECK(own.bending_yield == 7);
+  CHECK(own.bending_friction == 8);
   CHECK(own.bending == 0);
 }
 
