@@ -113,13 +113,22 @@ concept KeepsPast = requires(Store store, const Store& other, kernels::VectorsVi
   store.turn(by);
 };
 
+// Bending that yields (creases.h). resolved_bending(): 1/s^2, as reference::energy has it.
+// set_fold(): the rest of an element, in m, from now on.
+template <class Store>
+concept Yields = requires(Store store, const Store& seen, std::uint32_t element, double value) {
+  { seen.has_bent() } -> std::same_as<bool>;
+  { seen.resolved_bending(value) } -> std::same_as<double>;
+  store.set_fold(element, value);
+};
+
 /// Points: the particles as local passes, anchors and bodies see and move them.
 /// points(with_limits): anchors and bodies hold those that are moved. bodies(): contact with
 /// bodies.
 template <class Store>
 concept ParticleStore = std::constructible_from<Store, Substep&, const simd::Table&> &&
     BeginsFrames<Store> && Predicts<Store> && SweepsOnce<Store> && EndsMotions<Store> &&
-    IsRead<Store> && KeepsPast<Store> && requires(Store store, bool with_limits) {
+    IsRead<Store> && KeepsPast<Store> && Yields<Store> && requires(Store store, bool with_limits) {
   { store.points(with_limits) } -> std::same_as<typename Store::Points>;
   store.bodies();
 };
