@@ -1,26 +1,17 @@
 #include "engine/contact/sewn_points.h"
 
-#include <algorithm>
-#include <numeric>
-
 #include "engine/bytes_of.h"
+#include "engine/partition.h"
 
 namespace weft {
 
 SewnPoints::SewnPoints(const Model& model) {
   const SeamStore& seams = model.seams;
   if (seams.size() == 0) return;
+  Partition joined(model.slots());
+  for (std::size_t i = 0; i < seams.size(); ++i) joined.join(seams.a[i], seams.b[i]);
   first_.resize(model.slots());
-  std::iota(first_.begin(), first_.end(), 0u);
-  const auto first = [&](std::uint32_t point) {
-    while (first_[point] != point) point = first_[point] = first_[first_[point]];
-    return point;
-  };
-  for (std::size_t i = 0; i < seams.size(); ++i) {
-    const auto [low, high] = std::minmax({first(seams.a[i]), first(seams.b[i])});
-    first_[high] = low;
-  }
-  for (std::uint32_t& point : first_) point = first(point);
+  for (std::uint32_t point = 0; point < first_.size(); ++point) first_[point] = joined.first(point);
   const TriangleSurface& cloth = model.touched_surface();
   triangles_at_ = make_lists(first_.size(), [&](auto&& add) {
     for (std::uint32_t t = 0; t < cloth.triangles.size(); ++t) {
