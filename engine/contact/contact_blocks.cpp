@@ -99,7 +99,7 @@ void Contacts::find(const ContactPoints& points, const NearContacts& near) {
   place_of_.resize(first + near.found.size());
   colour(points, near.found, 0, edges, false);
   colour(points, near.found, edges, near.found.size(), true);
-  active_.resize(blocks_.size(), 0xffff);  // their multipliers may push
+  active_.resize(blocks_.size(), kMayAllBeActive);  // their multipliers may push
   are_linked_ = false;
 }
 

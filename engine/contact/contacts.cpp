@@ -16,8 +16,7 @@ using kernels::Vector;
 
 namespace {
 
-constexpr double kAlone = -1;                      // Contacts::moved_by_: no round moves it
-constexpr std::uint16_t kMayAllBeActive = 0xffff;  // Contacts::active_
+constexpr double kAlone = -1;  // Contacts::moved_by_: no round moves it
 
 }  // namespace
 

@@ -151,8 +151,9 @@ class Contacts {
   std::vector<std::uint8_t> is_beside_body_;
   std::vector<std::uint32_t> first_link_;
 
-  std::vector<std::uint16_t> active_;  // per block, a bit per lane
-  double active_count_ = 0;            // contacts
+  static constexpr std::uint16_t kMayAllBeActive = 0xffff;  // active_
+  std::vector<std::uint16_t> active_;                       // per block, a bit per lane
+  double active_count_ = 0;                                 // contacts
   std::vector<std::uint32_t> active_blocks_;
   std::vector<Colour> active_colours_;  // ranges of active_blocks_
   std::vector<Link> links_;
