@@ -167,7 +167,9 @@ export class BodyViews {
   /** sphere: around all that the cloth does. edge: m, the mean length of one of the cloth. */
   constructor(bodies, sphere, edge) {
     const pushedBy = PUSHED_EDGES * edge;
-    const material = (side) => pushBack(new MeshStandardMaterial({ roughness: 0.6, metalness: 0, side }), pushedBy);
+    // The offset is larger than that of the cloth, which would go through a floor that is seen at a flat angle.
+    const offset = { polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2 };
+    const material = (side) => pushBack(new MeshStandardMaterial({ roughness: 0.6, metalness: 0, side, ...offset }), pushedBy);
     this.material = material(FrontSide);
     this.twoSided = material(DoubleSide);
     this.views = bodies.map(

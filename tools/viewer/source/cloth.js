@@ -5,7 +5,7 @@ import {
   LineBasicMaterial, LineSegments, Mesh, MeshPhysicalMaterial, SRGBColorSpace,
 } from 'three';
 import { heatBytes } from './heat.js';
-import { Seams, meanSide, piecesOf, shadeOf, share } from './pieces.js';
+import { Seams, average, meanSide, piecesOf, shadeOf } from './pieces.js';
 
 export function dynamic(array, size) {
   return new BufferAttribute(array, size).setUsage(DynamicDrawUsage);
@@ -27,7 +27,7 @@ export function smoothNormals(triangles, places, normals, lists = []) {
       normals[p + 2] += nz;
     }
   }
-  share(lists, normals);
+  average(lists, normals);
   for (let i = 0; i < normals.length; i += 3) {
     const length = Math.hypot(normals[i], normals[i + 1], normals[i + 2]) || 1;
     normals[i] /= length;
@@ -151,7 +151,7 @@ export class ClothView {
     blend(this.motion.places, sample, share, this.places);
     blend(this.motion.stretch, sample, share, this.stretch);
     const lists = this.seams.closed(this.places);
-    share(lists, this.places);
+    average(lists, this.places);
     smoothNormals(this.motion.triangles, this.places, this.normals, lists);
     for (const name of ['position', 'normal', 'stretch']) {
       this.mesh.geometry.getAttribute(name).needsUpdate = true;

@@ -58,7 +58,7 @@ export class Seams {
 }
 
 /** Gives all particles of each list the mean of their vectors. */
-export function share(lists, vectors) {
+export function average(lists, vectors) {
   for (const list of lists) {
     const mean = [0, 0, 0];
     for (const particle of list) {
