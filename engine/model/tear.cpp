@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <ranges>
 #include <tuple>
 #include <utility>
 
@@ -93,8 +92,8 @@ TornModel torn_model(const Model& model, std::span<const std::vector<Break>> gro
   Tearing tearing(model, x);
   for (const std::vector<Break>& group : groups)
     std::ignore = std::ranges::any_of(group, [&](const Break& it) { return tearing.apply(it); });
-  std::ranges::for_each(without | std::views::reverse,
-                        [&](std::uint32_t seam) { tearing.forget_seam(seam); });
+  std::for_each(without.rbegin(), without.rend(),
+                [&](std::uint32_t seam) { tearing.forget_seam(seam); });
   return std::move(tearing).result();
 }
 

@@ -1,9 +1,9 @@
 #include "engine/surface/tears.h"
 
 #include <algorithm>
+#include <compare>
 #include <limits>
 #include <queue>
-#include <tuple>
 #include <utility>
 
 #include "engine/bytes_of.h"
@@ -143,20 +143,18 @@ class TornPlace {
   /// no tear on the way. The way follows the straight line from a to b.
   std::uint32_t before_tear(std::uint32_t from, std::uint32_t to, Vec3 a, Vec3 b) const {
     if (local_[from] == kNoIndex || local_[to] == kNoIndex) return kNoIndex;
-    using Reached =
-        std::tuple<double, int, std::uint32_t, std::uint32_t>;  // beside, hops, to, from
     std::priority_queue<Reached, std::vector<Reached>, std::greater<>> waiting;
     std::vector<std::uint32_t> before(triangles_.size(), kNoIndex);
-    waiting.emplace(0, 0, from, from);
+    waiting.push({0, 0, from, from});
     while (!waiting.empty()) {
-      const auto [beside, hops, here, came_from] = waiting.top();
+      const Reached at = waiting.top();
       waiting.pop();
-      if (before[local_[here]] != kNoIndex) continue;
-      before[local_[here]] = came_from;
-      if (here == to) return first_tear(from, to, before);
-      for_each_neighbour(here, [&](std::uint32_t next, const Edge& edge) {
-        if (before[local_[next]] == kNoIndex)
-          waiting.emplace(beside + distance(edge, a, b), hops + 1, next, here);
+      if (before[local_[at.triangle]] != kNoIndex) continue;
+      before[local_[at.triangle]] = at.from;
+      if (at.triangle == to) return first_tear(from, to, before);
+      for_each_neighbour(at.triangle, [&](std::uint32_t next, const Edge& edge) {
+        if (before[local_[next]] != kNoIndex) return;
+        waiting.push({at.beside + distance(edge, a, b), at.hops + 1, next, at.triangle});
       });
     }
     return kNoIndex;
@@ -171,6 +169,14 @@ class TornPlace {
   }
 
  private:
+  /// A triangle on a way, and the one that the way comes from. Ways are ordered by what they leave
+  /// the straight line, and then by their triangles.
+  struct Reached {
+    double beside;
+    int hops;
+    std::uint32_t triangle, from;
+    auto operator<=>(const Reached&) const = default;
+  };
   struct Edge {
     std::uint32_t p = 0, q = 0, triangle = 0;
     auto operator<=>(const Edge&) const = default;

@@ -61,6 +61,7 @@ WEFT_OF_TEST(find_if)
   }
 WEFT_OF_ORDER(sort) WEFT_OF_ORDER(stable_sort) WEFT_OF_ORDER(is_sorted)
 WEFT_OF_ORDER(min_element) WEFT_OF_ORDER(max_element)
+WEFT_OF_ORDER(push_heap) WEFT_OF_ORDER(pop_heap)
 #undef WEFT_OF_ORDER
 
 template <class I, class C = anything_less, class P = identity>
