@@ -55,7 +55,8 @@ class FieldName {
 /// In one line, whatever a text from outside in it holds.
 inline std::string in_one_line(std::string text) {
   for (char& c : text) {
-    if ((c >= 0 && c < ' ') || c == 0x7f) c = '?';
+    const auto byte = static_cast<unsigned char>(c);  // char has a sign on some processors
+    if (byte < ' ' || byte == 0x7f) c = '?';
   }
   return text;
 }
