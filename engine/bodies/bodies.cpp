@@ -6,6 +6,7 @@
 
 #include "engine/bodies/validate_bodies.h"
 #include "engine/bytes_of.h"
+#include "engine/public_vectors.h"
 
 namespace weft {
 namespace {
@@ -30,7 +31,9 @@ std::uint32_t Bodies::add(const Body& body) {
                      .from = pose,
                      .to = pose,
                      .thickness = body.thickness,
-                     .friction = body.friction});
+                     .friction = body.friction,
+                     .mass = body.mass.value_or(BodyMass{})});
+  if (body.mass) put(bodies_.back(), pose);
   are_others_ = true;
   return static_cast<std::uint32_t>(bodies_.size() - 1);
 }
@@ -55,6 +58,7 @@ bool Bodies::place(std::uint32_t id, const Pose& pose) {
   const bool changes = !same(to, entry.from) || !same(to, entry.to);
   entry.from = entry.to = to;
   entry.moves = false;
+  if (has_mass(id)) put(entry, to);
   are_others_ = are_others_ || changes;
   return changes;
 }
@@ -105,7 +109,7 @@ std::span<const TravellingBody> Bodies::travelling(double friction_of_cloth, con
   travelling_.clear();
   for (std::uint32_t id = 0; id < bodies_.size(); ++id) {
     const Entry& entry = bodies_[id];
-    if (entry.shape == nullptr || !entry.is_on) continue;
+    if (entry.shape == nullptr || !entry.is_on || has_mass(id)) continue;
     const MeshShape* mesh = mesh_of(entry, gaps);
     const auto vertices = [&](const std::vector<kernels::Vector>& given) {
       if (mesh == nullptr) return std::span<const kernels::Vector>{};
@@ -124,8 +128,9 @@ std::span<const TravellingBody> Bodies::travelling(double friction_of_cloth, con
 }
 
 bool Bodies::ask_for_gaps() const {
-  return std::ranges::any_of(
-      bodies_, [](const Entry& e) { return e.shape != nullptr && e.shape->thin() != nullptr; });
+  return std::ranges::any_of(bodies_, [](const Entry& e) {
+    return e.shape != nullptr && e.shape->thin() != nullptr && !(e.mass.mass > 0);
+  });
 }
 
 bool Bodies::any() const {
@@ -136,6 +141,21 @@ bool Bodies::are_valid() const {
   const auto is_finite = [](kernels::Vector v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
   };
+  const auto is_valid_motion = [&](const Entry& e) {
+    const auto& [centre, rotation, velocity, momentum, past, touching] = e.motion;
+    const kernels::Vector all[] = {centre,
+                                   velocity,
+                                   momentum,
+                                   past.velocity,
+                                   past.momentum,
+                                   past.velocity_before,
+                                   past.momentum_before,
+                                   past.moved,
+                                   past.turn,
+                                   to_internal(e.force),
+                                   to_internal(e.moment)};
+    return std::ranges::all_of(all, is_finite) && validate(Pose{{}, rotation});
+  };
   const auto is_valid = [&](const Entry& e) {
     if (e.shape == nullptr) return true;
     const std::size_t count = e.shape->mesh() != nullptr ? e.shape->mesh()->vertices.size() : 0;
@@ -143,7 +163,9 @@ bool Bodies::are_valid() const {
     const bool are_as_many = e.vertices_from.size() == count && e.vertices_to.size() == count;
     return (!are_given || are_as_many) && std::ranges::all_of(e.vertices_from, is_finite) &&
            std::ranges::all_of(e.vertices_to, is_finite) &&
-           validate(Body{e.shape, e.to, e.thickness, e.friction}) && validate(e.from);
+           validate(Body{e.shape, e.to, e.thickness, e.friction,
+                         e.mass.mass != 0 ? std::optional(e.mass) : std::nullopt}) &&
+           validate(e.from) && is_valid_motion(e);
   };
   return std::ranges::all_of(bodies_, is_valid);
 }
@@ -170,8 +192,9 @@ void Bodies::arrive(std::span<const BodyImpulse> impulses, double dt) {
 std::size_t Bodies::bytes() const {
   std::size_t bytes = bytes_of(bodies_) + bytes_of(travelling_);
   for (const Entry& entry : bodies_)
-    bytes += bytes_of(entry.vertices_from) + bytes_of(entry.vertices_to);
-  return bytes;
+    bytes += bytes_of(entry.vertices_from) + bytes_of(entry.vertices_to) +
+             bytes_of(entry.motion.touching);
+  return bytes + bytes_of(free_);
 }
 
 }  // namespace weft

@@ -3,6 +3,7 @@
 
 #include <weft/body.h>
 
+#include "engine/turn.h"
 #include "kernels/reference/bodies.h"
 
 namespace weft {
@@ -28,5 +29,14 @@ class PoseTravel {
 
 /// The same rotation with the length 1.
 Rotation normalized(const Rotation& rotation);
+/// First b, then a.
+Rotation product(const Rotation& a, const Rotation& b);
+Rotation inverse(const Rotation& rotation);
+/// By |turn| rad about the axis `turn`.
+Rotation rotation_by(kernels::Vector turn);
+Rotation rotation_of(const Turn& turn);
+/// The turn of a rotation, by half a turn at most.
+kernels::Vector turn_of(const Rotation& rotation);
+reference::Placement placement_of(const Rotation& rotation, kernels::Vector centre);
 
 }  // namespace weft

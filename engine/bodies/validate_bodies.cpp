@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "engine/bodies/body_mass.h"
+#include "engine/bodies/body_shape.h"
 #include "engine/validation.h"
 
 namespace weft {
@@ -19,7 +21,12 @@ Result<void> validate(const Body& body) {
   if (!body.shape) return refuse("shape", "must not be null", "null");
   if (auto r = validate(body.pose); !r) return r;
   if (auto r = validate_not_negative("thickness", body.thickness); !r) return r;
-  return validate_not_negative("friction", body.friction);
+  if (auto r = validate_not_negative("friction", body.friction); !r) return r;
+  if (!body.mass) return {};
+  if (body.shape->mesh() != nullptr || !body.shape->is_bounded())
+    return refuse("mass", "must be of a ball, a capsule or a hull",
+                  body.shape->mesh() != nullptr ? "a triangle mesh" : "a plane");
+  return validate(*body.mass);
 }
 
 }  // namespace weft

@@ -3,6 +3,7 @@
 
 #include "engine/bodies/validate_bodies.h"
 #include "engine/cpp_interface/cloth_impl.h"
+#include "engine/model/rest_lengths.h"
 #include "engine/model/validate.h"
 #include "engine/public_vectors.h"
 #include "engine/solvers/small_steps/small_steps.h"
@@ -31,11 +32,26 @@ Result<void> validate_vertices(const Bodies& bodies, std::uint32_t id,
   return {};
 }
 
+Result<void> validate_mass(const Bodies& bodies, std::uint32_t id) {
+  if (auto r = validate_body(bodies, id); !r) return r;
+  if (bodies.has_mass(id)) return {};
+  return refuse("body", "has no mass", std::to_string(id));
+}
+
+/// A body that moves by itself touches particles alone.
+Result<void> validate_width(const Model& model, const Body& body) {
+  if (!body.mass || model.has_spheres()) return {};
+  if (!body.shape->widths().fit_through(widest_gaps(model), body.thickness)) return {};
+  return refuse("mass", "must be of a body that does not fit between the particles of the cloth",
+                "a width of " + number(body.shape->widths().least) + " m");
+}
+
 }  // namespace
 
 Result<std::uint32_t> Cloth::add_body(const Body& body) {
   if (auto valid = validate(body); !valid) return Error{valid.error()};
   if (auto prepared = prepare_for("body"); !prepared) return Error{prepared.error()};
+  if (auto r = validate_width(*impl_->state.model, body); !r) return Error{r.error()};
   impl_->state.wake();
   return impl_->state.bodies.add(body);
 }
@@ -43,6 +59,8 @@ Result<std::uint32_t> Cloth::add_body(const Body& body) {
 Result<void> Cloth::move_body(std::uint32_t id, const Pose& pose) {
   if (auto r = validate_body(impl_->state.bodies, id); !r) return r;
   if (auto r = validate(pose); !r) return r;
+  if (impl_->state.bodies.has_mass(id))
+    return refuse("body", "moves by itself, since it has a mass", std::to_string(id));
   if (impl_->state.bodies.move(id, pose)) impl_->state.wake();
   return {};
 }
@@ -82,6 +100,34 @@ Result<void> Cloth::remove_body(std::uint32_t id) {
 Result<BodyLoad> Cloth::body_load(std::uint32_t id) const {
   if (auto r = validate_body(impl_->state.bodies, id); !r) return Error{r.error()};
   return impl_->state.bodies.load(id);
+}
+
+Result<Pose> Cloth::body_pose(std::uint32_t id) const {
+  if (auto r = validate_body(impl_->state.bodies, id); !r) return Error{r.error()};
+  return impl_->state.bodies.pose(id);
+}
+
+Result<BodyVelocity> Cloth::body_velocity(std::uint32_t id) const {
+  if (auto r = validate_mass(impl_->state.bodies, id); !r) return Error{r.error()};
+  return impl_->state.bodies.velocity(id);
+}
+
+Result<void> Cloth::set_body_velocity(std::uint32_t id, const BodyVelocity& velocity) {
+  if (auto r = validate_mass(impl_->state.bodies, id); !r) return r;
+  if (!finite(velocity.linear))
+    return refuse("velocity.linear", "must be finite", text(velocity.linear));
+  if (!finite(velocity.angular))
+    return refuse("velocity.angular", "must be finite", text(velocity.angular));
+  if (impl_->state.bodies.set_velocity(id, velocity)) impl_->state.wake();
+  return {};
+}
+
+Result<void> Cloth::set_body_force(std::uint32_t id, Vec3 force, Vec3 moment) {
+  if (auto r = validate_mass(impl_->state.bodies, id); !r) return r;
+  if (!finite(force)) return refuse("force", "must be finite", text(force));
+  if (!finite(moment)) return refuse("moment", "must be finite", text(moment));
+  if (impl_->state.bodies.set_force(id, force, moment)) impl_->state.wake();
+  return {};
 }
 
 std::vector<Torn> Cloth::torn() const { return impl_->state.torn; }

@@ -99,6 +99,11 @@ void visit_fields(Is<BodyLoad> auto& load, auto& archive) {
   archive(force, moment);
 }
 
+void visit_fields(Is<BodyMass> auto& mass, auto& archive) {
+  auto& [amount, centre, inertia] = mass;
+  archive(amount, centre, inertia);
+}
+
 // settings.h
 
 void visit_fields(Is<Settings> auto& settings, auto& archive) {

@@ -57,6 +57,7 @@ std::uint32_t carry(State& s, const Carriage& by) {
   turn(s.velocity, by);
   s.pins.carry([&](Vector p) { return by.moved(p); }, by.turned);
   s.anchors.carry([&](Vector p) { return by.moved(p); }, by.turned);
+  s.bodies.carry(by.turned, by.about, by.to);
   if (s.small_steps) s.small_steps->turn(by.turned);
   return kNoIndex;
 }

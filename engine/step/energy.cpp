@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "engine/measure/state_measure.h"
+#include "engine/solvers/small_steps/free_bodies.h"
+#include "engine/solvers/small_steps/small_steps.h"
 #include "engine/step/motion.h"
 #include "engine/step/pin_work.h"
 #include "engine/tuning.h"
@@ -49,6 +51,12 @@ double slow_down(State& s, const PinMotion& pins, double factor) {
   return fall;
 }
 
+/// Bodies that the guard slows down as it does particles; nullptr where there are none.
+FreeBodies* free_bodies(const State& s) {
+  if (!s.small_steps || s.small_steps->free_bodies().empty()) return nullptr;
+  return &s.small_steps->free_bodies();
+}
+
 /// J, of what hangs at rest and by scheme paper has the velocity h a / 2.
 double energy_at_rest(const State& s, double h) {
   double sum = 0;
@@ -83,8 +91,13 @@ double gained_energy(const State& s, const kernels::ImpulseEnergy& change, doubl
 bool take_energy(State& s, double gain, double h, kernels::ImpulseEnergy& change) {
   if (!(gain > 0)) return true;
   const PinMotion pins = pins_move(s) ? motion_of_pins(s, h) : PinMotion{};
-  const double kinetic = 0.5 * twice_kinetic(s, pins);
-  change.gain -= slow_down(s, pins, gain < kinetic ? std::sqrt(1 - gain / kinetic) : 0);
+  const auto velocity = [&](Vector x) { return pins.at(x); };
+  FreeBodies* const bodies = free_bodies(s);
+  double kinetic = 0.5 * twice_kinetic(s, pins);
+  if (bodies != nullptr) kinetic += bodies->kinetic(velocity, pins.spin);
+  const double factor = gain < kinetic ? std::sqrt(1 - gain / kinetic) : 0;
+  change.gain -= slow_down(s, pins, factor);
+  if (bodies != nullptr) change.gain -= 2 * bodies->slow_down(velocity, pins.spin, factor);
   return gain <= kinetic;
 }
 

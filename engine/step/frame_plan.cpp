@@ -103,6 +103,7 @@ Gaps gaps_of(State& s) {
 
 void add_bodies(State& s, FramePlan& plan) {
   plan.bodies = s.bodies.travelling(s.model->friction, gaps_of(s));
+  plan.free = s.bodies.free(s.model->friction);
   plan.bodies_move = s.bodies.moving();
   plan.bodies_are_new = s.bodies.are_others();
 }

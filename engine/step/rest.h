@@ -15,6 +15,7 @@
 
 #include "engine/model/model.h"
 #include "engine/saving/archive.h"
+#include "engine/tuning.h"
 #include "kernels/vectors.h"
 
 namespace weft {
@@ -26,6 +27,8 @@ class Rest {
   bool is_asleep() const { return is_asleep_; }
   /// Something was changed from outside.
   void wake();
+  /// m/s: a body that is faster does not rest.
+  double slowest() const { return reach_ / tuning::kRestTime; }
   /// After a step of dt. Returns whether the cloth falls asleep.
   bool watch(const kernels::Vectors& position, double dt);
   std::size_t bytes() const { return from_.bytes(); }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/measure/state_measure.h"
+#include "engine/solvers/small_steps/free_bodies.h"
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/stall.h"
 #include "engine/solvers/sweeps/sweeps.h"
@@ -273,6 +274,7 @@ void commit(State& s, const Remains& remains, Team& team) {
   s.seams.take(s.small_steps->seams().states());
   s.sliders.take(s.small_steps->sliders().places());
   s.creases.take(s.small_steps->creases().creases());
+  s.bodies.take(s.small_steps->free_bodies().states());
   if (!takes_over_in(s)) s.small_steps->keep(team);  // else the past is not looked at
 }
 

@@ -175,6 +175,7 @@ void State::go_on_from(const State& from) {
   next.anchors.tie(model->anchors, next.position);
   next.creases = Creases(from.creases, its_model, *model);
   next.rest = rest;
+  next.bodies.forget_touching();
   if (are_different(*model, its_model)) next.lengthening = {};
   take(std::move(next), from.settings);
   displaced = true;

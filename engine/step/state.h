@@ -77,6 +77,7 @@ struct Checkpoint {
   Seams seams;
   Sliders sliders;
   Creases creases;
+  std::vector<FreeBody> bodies;  // those that move by themselves
   double lost_energy = 0, elastic_energy = 0, give_per_mass = 0, longest_substep = 0;
 };
 

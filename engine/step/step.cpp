@@ -31,6 +31,8 @@ class Transaction {
     s_.step_start.seams = s_.seams;
     s_.step_start.sliders = s_.sliders;
     s_.step_start.creases = s_.creases;
+    const auto bodies = s_.bodies.free(s_.model->friction);
+    s_.step_start.bodies.assign(bodies.begin(), bodies.end());
     s_.step_start.lost_energy = s_.lost_energy;
     s_.step_start.elastic_energy = s_.elastic_energy;
     s_.step_start.give_per_mass = s_.give_per_mass;
@@ -42,6 +44,7 @@ class Transaction {
     std::swap(s_.seams, s_.step_start.seams);
     std::swap(s_.sliders, s_.step_start.sliders);
     std::swap(s_.creases, s_.step_start.creases);
+    s_.bodies.take(s_.step_start.bodies);
     s_.lost_energy = s_.step_start.lost_energy;
     s_.elastic_energy = s_.step_start.elastic_energy;
     s_.give_per_mass = s_.step_start.give_per_mass;
@@ -278,6 +281,7 @@ void fall_asleep(State& s, StepReport& report) {
     return 0.5 * mass * dot(v, v);
   };
   for (std::size_t slot = 0; slot < s.model->slots(); ++slot) report.energy_lost += still(slot);
+  report.energy_lost += s.bodies.bring_to_rest();
   s.asleep = {.status = report.status,
               .asleep = true,
               .contacts = report.contacts,
@@ -346,6 +350,7 @@ void advance(State& s, double dt, StepReport& report, Team& team) {
   }
   if (done) tell_held_apart(s, report);
   const bool is_sewing = report.open_seams > report.late_seams;
+  if (s.bodies.fastest() > s.rest.slowest()) s.rest.wake();
   if (done && s.settings.sleep && !is_sewing && s.rest.watch(s.position, dt))
     fall_asleep(s, report);
 }

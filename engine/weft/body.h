@@ -1,4 +1,5 @@
-/// Bodies that cloth lies on, slides over and is pushed by: the caller moves them. Part of weft.h.
+/// Bodies that cloth lies on, slides over and is pushed by: the caller moves them, or they have a
+/// mass and move by themselves. Part of weft.h.
 ///
 ///   auto leg = weft::build_shape(weft::Capsule{hip, knee, 0.09, 0.06});  // m, in its coordinates
 ///
@@ -11,6 +12,20 @@
 /// Bodies are solid: a particle that is inside when a step begins comes out at 2 m/s at most, and
 /// gains no speed. Solver small_steps only; `automatic` becomes small_steps when the first body is
 /// added.
+///
+/// A body with a mass (Body::mass) moves by gravity, by its contacts with the cloth, and by the
+/// force that the caller gives:
+///
+///   auto ball = weft::build_shape(weft::Ball{{}, 0.1});
+///   auto mass = weft::mass_of(*ball.value(), 1000);  // kg/m^3
+///   auto id = cloth.add_body({.shape = ball.value(), .pose = pose, .mass = mass.value()});
+///   auto report = cloth.step(1.0 / 60);
+///   weft::Pose where = cloth.body_pose(id.value()).value();
+///
+/// It falls and turns as a rigid body. The cloth loses what it gives to the body. Such a body does
+/// not touch other bodies, does not feel the air, and touches the particles of the cloth alone,
+/// fixed ones included. One that is much heavier than the cloth under it needs short substeps. A
+/// host with a physics engine moves its bodies by move_body and gives them body_load instead.
 ///
 /// Planes, balls, capsules and hulls touch the particles of the cloth, by a contact in closed form.
 /// Fast particles are stopped too, if the last search (every 2 ms) found them near. The search
@@ -38,6 +53,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -107,6 +123,23 @@ class BodyShape;
 /// Checks the shape and prepares it. An error names the field, the index and the value.
 WEFT_API Result<std::shared_ptr<const BodyShape>> build_shape(const ShapeDescription& shape);
 
+/// The mass of a body that moves by itself, and how it is spread.
+struct BodyMass {
+  double mass = 0;  ///< kg, > 0
+  Vec3 centre{};    ///< m, the centre of mass, in the coordinates of the body
+  /// kg m^2, the tensor of inertia about the centre, along the axes of the body: its elements xx,
+  /// yy, zz, yz, zx and xy. The element xy is minus the sum of m x y.
+  std::array<double, 6> inertia{};
+};
+/// The mass of a ball, a capsule or a hull that is full, at a density (kg/m^3, > 0).
+WEFT_API Result<BodyMass> mass_of(const BodyShape& shape, double density);
+
+/// The velocity of a body that moves by itself.
+struct BodyVelocity {
+  Vec3 linear{};   ///< m/s, of its centre of mass
+  Vec3 angular{};  ///< rad/s
+};
+
 /// A body for Cloth::add_body.
 struct Body {
   std::shared_ptr<const BodyShape> shape;
@@ -118,6 +151,9 @@ struct Body {
   /// Coulomb's coefficient, at least 0. The coefficient of a contact is the geometric mean of this
   /// one and the cloth's (SceneDescription::friction).
   double friction = 0.3;
+  /// With a mass it moves by itself, and move_body is refused. It must be a ball, a capsule or a
+  /// hull, and too large to fit between the particles of the cloth.
+  std::optional<BodyMass> mass{};
 };
 
 /// The mean force and moment of the cloth on a body during the last step. The body acted on the

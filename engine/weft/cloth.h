@@ -284,7 +284,8 @@ class WEFT_API Cloth {
   /// evenly about one axis by half a turn at most, and takes cloth along. The last move before a
   /// step counts. A body that is not moved before a step stands still in it.
   Result<void> move_body(std::uint32_t id, const Pose& pose);
-  /// Teleports a body. Cloth that is then inside the body comes out slowly.
+  /// Teleports a body. Cloth that is then inside the body comes out slowly. A body with a mass
+  /// keeps its velocity.
   Result<void> place_body(std::uint32_t id, const Pose& pose);
   /// Gives a triangle mesh other vertices, in its own coordinates. They travel there in straight
   /// lines during the next step, while the pose travels too. The last move before a step counts.
@@ -296,6 +297,13 @@ class WEFT_API Cloth {
   Result<void> switch_body(std::uint32_t id, bool on);
   Result<void> remove_body(std::uint32_t id);
   Result<BodyLoad> body_load(std::uint32_t id) const;
+  /// Where a body is: where the last step ended, or where it was put since.
+  Result<Pose> body_pose(std::uint32_t id) const;
+  /// The velocity of a body with a mass; the two below are of one, too.
+  Result<BodyVelocity> body_velocity(std::uint32_t id) const;
+  Result<void> set_body_velocity(std::uint32_t id, const BodyVelocity& velocity);
+  /// N, at its centre of mass, and N m. They act in every step until others are set.
+  Result<void> set_body_force(std::uint32_t id, Vec3 force, Vec3 moment);
   /// The contacts when the last step of this cloth ended; an empty list after clone() and change().
   std::vector<BodyContact> body_contacts() const;
 

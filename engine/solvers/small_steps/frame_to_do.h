@@ -27,8 +27,9 @@ struct FramePlan {
   std::span<const reference::RailPlace> sliders{};
   std::span<const Crease> creases{};
   std::span<const TravellingBody> bodies{};
-  bool bodies_move = false;     // in this step, or in the last, or there are other ones
-  bool bodies_are_new = false;  // there are other ones, or one was put elsewhere
+  std::span<const FreeBody> free{};  // those that move by themselves
+  bool bodies_move = false;          // in this step, or in the last, or there are other ones
+  bool bodies_are_new = false;       // there are other ones, or one was put elsewhere
 
   double postponed = 0;  // log2: substeps are to be so much shorter, in later frames
   bool goes_on = false;  // a projection from where the last one ended, in the same step

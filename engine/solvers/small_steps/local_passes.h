@@ -50,6 +50,7 @@ class LocalPasses {
     for (const End& end : items_.ends(item)) look_at(end.slot);
   }
   void look_everywhere();
+  bool is_asked() const { return !waiting_.empty(); }
   /// Forgets items that were asked for and not done: where a step was broken off.
   void forget();
 

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/solvers/small_steps/body_layout.h"
 #include "engine/solvers/small_steps/contact_times.h"
+#include "engine/solvers/small_steps/free_bodies.h"
+#include "engine/solvers/small_steps/free_host.h"
 #include "engine/solvers/small_steps/lane_store.h"
 #include "engine/solvers/small_steps/linkage.h"
 #include "engine/solvers/small_steps/particle_store.h"
@@ -25,6 +28,7 @@ class StoredSmallSteps final : public SmallSteps {
         seams_(model),
         sliders_(model, settings.contact_tolerance),
         creases_(model, layout_.bending.creases),
+        free_(model),
         carried_(model),
         linkage_(model, layout_.linkage),
         store_(now_, table) {
@@ -52,6 +56,7 @@ class StoredSmallSteps final : public SmallSteps {
     store_.begin_bending(plan);
     store_.begin_past(team);
     begin_bodies(plan, team);
+    begin_free_bodies(plan, gravity);
     now_.next_formula = now_.formula_after(now_.has_past ? store_.past_h() : now_.h);
   }
   void accelerate(kernels::Vector gravity, kernels::VectorsView force) override {
@@ -77,6 +82,7 @@ class StoredSmallSteps final : public SmallSteps {
     now_.formula = std::exchange(now_.next_formula, now_.formula_after(now_.h));
     store_.advance_anchors();
     advance_bodies(now_.formula.part, team);
+    advance_free_bodies();
     if (model_.has_attached()) store_.hold_anchors(team);  // before constraints are swept
     store_.bend(team);
   }
@@ -152,14 +158,22 @@ class StoredSmallSteps final : public SmallSteps {
     return store_.bending_energy(give, team);
   }
   double deepest_in_body(Team& team) override {
-    if (store_.bodies().empty()) return 0;
-    return contact_times_.timed(&ContactMs::verify, [&] { return store_.deepest_in_body(team); });
+    if (store_.bodies().empty() && free_.empty()) return 0;
+    return contact_times_.timed(&ContactMs::verify, [&] {
+      const double in_free = free_.empty() ? 0 : free_.deepest(store_.points(false));
+      return store_.bodies().empty() ? in_free : std::max(in_free, store_.deepest_in_body(team));
+    });
   }
   const SeamThreads& seams() const override { return seams_; }
   const SliderThreads& sliders() const override { return sliders_; }
   const CreaseThreads& creases() const override { return creases_; }
-  void report_bodies(BodyReport& report) override { store_.bodies().sum(report); }
+  void report_bodies(BodyReport& report) override {
+    store_.bodies().sum(report);
+    if (!free_.empty()) free_.sum(report);
+  }
+  FreeBodies& free_bodies() override { return free_; }
   void read_contacts(std::vector<BodyTouch>& contacts) override {
+    if (!free_.empty()) free_.read_contacts(store_.points(false), contacts);
     if (store_.bodies().empty()) return;
     const Points points = store_.points(true);
     store_.bodies().read_contacts(PointParticles(points), contacts);
@@ -192,8 +206,8 @@ class StoredSmallSteps final : public SmallSteps {
   double take_contact_visits() override { return store_.bodies().take_visits(); }
   ContactMs take_contact_ms() override { return contact_times_.take(); }
   std::size_t bytes() const override {
-    return now_.bytes() + seams_.bytes() + sliders_.bytes() + creases_.bytes() + carried_.bytes() +
-           linkage_.bytes() + store_.bytes();
+    return now_.bytes() + seams_.bytes() + sliders_.bytes() + creases_.bytes() + free_.bytes() +
+           bytes_of(far_) + carried_.bytes() + linkage_.bytes() + store_.bytes();
   }
 
  private:
@@ -213,6 +227,7 @@ class StoredSmallSteps final : public SmallSteps {
     draw_seams();
     hold_sliders();
     hold_bodies(team);
+    hold_free_bodies();
     now_.is_begun = true;
   }
   LocalWork run_passes(const SphereContacts& contacts, std::int64_t most_visits, Team& team) {
@@ -224,11 +239,50 @@ class StoredSmallSteps final : public SmallSteps {
         .mended = tuning::kMended * now_.settings.tolerance,
         .most_visits = most_visits,
         .laws = now_.law_step()};
-    const LocalWork work = now_.passes.run(points, contacts, limits);
+    LocalWork work = now_.passes.run(points, contacts, limits);
     draw_seams();
     hold_sliders();
     hold_by_meshes(team);
+    if (!free_.empty()) hold_free_bodies_between(points, contacts, limits, work);
     return work;
+  }
+  /// Contacts with bodies that move by themselves and constraints take turns.
+  void hold_free_bodies_between(Points& points, const SphereContacts& contacts, LocalLimits limits,
+                                LocalWork& work) {
+    hold_free_bodies();
+    for (int turn = 1; turn < tuning::kFreeTurns && work.done && now_.passes.is_asked(); ++turn) {
+      limits.most_visits -= work.visits;
+      const LocalWork more = now_.passes.run(points, contacts, limits);
+      work = {work.visits + more.visits, work.corrections + more.corrections, more.done};
+      hold_free_bodies();
+    }
+  }
+  void begin_free_bodies(const FramePlan& plan, kernels::Vector gravity) {
+    free_.begin(plan.free, {.h = plan.h,
+                            .past_h = store_.past_h(),
+                            .substeps = plan.substeps,
+                            .stands = plan.projects(),
+                            .has_past = now_.has_past,
+                            .gravity = gravity});
+    if (!free_.empty() && far_.empty()) {
+      far_ = shortest_lengths(model_);
+      for (double& far : far_) far *= now_.local_tolerance();
+    }
+  }
+  void advance_free_bodies() {
+    if (free_.empty()) return;
+    contact_times_.timed(&ContactMs::find, [&] {
+      free_.advance(now_.formula);
+      if (free_.searches()) free_.search(store_.points(false));
+    });
+  }
+  void hold_free_bodies() {
+    if (free_.empty()) return;
+    contact_times_.timed(&ContactMs::sweep, [&] {
+      if (free_.stands()) free_.search(store_.points(false));
+      FreeHost<Store> host(store_, now_, far_);
+      free_.hold(host);
+    });
   }
   void begin_bodies(const FramePlan& plan, Team& team) {
     if (plan.bodies.empty())
@@ -291,6 +345,17 @@ class StoredSmallSteps final : public SmallSteps {
       if (now_.is_free(jolt.slot)) store_.jolt(jolt.slot, jolt.by - held_by_body(jolt));
     });
     take_arrivals(now_.arrived, [&](const Arrival& arrival) { begin_at_limit(arrival); });
+    if (!free_.empty())
+      free_.take_arrivals(now_.next_formula, [&](std::uint32_t slot) { return begin_at(slot); });
+  }
+  /// The same as it comes to touch a body that moves by itself.
+  ChangedPast begin_at(std::uint32_t slot) {
+    const kernels::Vector v = store_.velocity_before(slot);
+    const kernels::Vector start = store_.points(false).position_at_start(slot);
+    store_.begin_at_limit(slot);
+    const auto points = store_.points(false);
+    return {points.position(slot), store_.velocity_before(slot) - v,
+            start - points.position_at_start(slot)};
   }
   /// The part of a jolt that bodies keep out.
   kernels::Vector held_by_body(const Jolt& jolt) {
@@ -336,6 +401,8 @@ class StoredSmallSteps final : public SmallSteps {
   SeamThreads seams_;
   SliderThreads sliders_;
   CreaseThreads creases_;
+  FreeBodies free_;
+  std::vector<double> far_;  // of FreeHost; made when the first body is there
   Departures departures_;
   ContactTimes contact_times_;
   CarriedForces carried_;

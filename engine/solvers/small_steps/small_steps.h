@@ -26,6 +26,7 @@
 
 namespace weft {
 
+class FreeBodies;
 class Model;
 namespace simd {
 struct Table;
@@ -74,6 +75,8 @@ class SmallSteps {
   virtual const CreaseThreads& creases() const = 0;
   /// The effects of contacts with bodies in the frame.
   virtual void report_bodies(BodyReport& report) = 0;
+  /// Bodies that move by themselves, where the frame has ended.
+  virtual FreeBodies& free_bodies() = 0;
   /// m, by which a particle is under the surface of a body.
   virtual double deepest_in_body(Team& team) = 0;
   /// After the last substep: verifies contacts with meshes. Returns whether particles had to be
