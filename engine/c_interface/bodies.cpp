@@ -1,4 +1,7 @@
 /// Bodies in C.
+#include <algorithm>
+#include <optional>
+
 #include "engine/c_interface/arrays.h"
 #include "engine/c_interface/handles.h"
 #include "engine/c_interface/structs.h"
@@ -6,18 +9,35 @@
 namespace weft::c_interface {
 namespace {
 
+void write_rotation(const Rotation& r, double* to) {
+  to[0] = r.x;
+  to[1] = r.y;
+  to[2] = r.z;
+  to[3] = r.w;
+}
+
+void write_mass(const BodyMass& mass, weft_body& to) {
+  to.mass = mass.mass;
+  write_vector(mass.centre, to.centre_of_mass);
+  std::ranges::copy(mass.inertia, to.inertia);
+}
+
 weft_body body_of(const Body& body) {
   weft_body out{};
   out.size = sizeof out;
   write_vector(body.pose.position, out.position);
-  const Rotation& r = body.pose.rotation;
-  out.rotation[0] = r.x;
-  out.rotation[1] = r.y;
-  out.rotation[2] = r.z;
-  out.rotation[3] = r.w;
+  write_rotation(body.pose.rotation, out.rotation);
   out.thickness = body.thickness;
   out.friction = body.friction;
+  if (body.mass) write_mass(*body.mass, out);
   return out;
+}
+
+std::optional<BodyMass> mass_in(const weft_body& body) {
+  if (body.mass == 0) return std::nullopt;
+  BodyMass mass{.mass = body.mass, .centre = vector_of(body.centre_of_mass)};
+  std::ranges::copy(body.inertia, mass.inertia.begin());
+  return mass;
 }
 
 weft_body_load load_of(const BodyLoad& load) {
@@ -176,7 +196,8 @@ weft_result weft_add_body(weft_cloth* cloth, const weft_body* body, uint32_t* id
     const auto added = cloth->cloth.add_body({.shape = b.shape->shape,
                                               .pose = pose_of(b.position, b.rotation),
                                               .thickness = b.thickness,
-                                              .friction = b.friction});
+                                              .friction = b.friction,
+                                              .mass = mass_in(b)});
     if (!added) return weft::Error{added.error()};
     *id = added.value();
     return {};
@@ -227,6 +248,61 @@ weft_result weft_body_load_of(const weft_cloth* cloth, uint32_t id, weft_body_lo
     if (!found) return weft::Error{found.error()};
     write_struct(load_of(found.value()), load);
     return {};
+  });
+}
+
+weft_result weft_give_mass(weft_body* body, double density) {
+  return call([&]() -> weft::Result<void> {
+    const auto read = read_struct("body", body, body_of({}));
+    if (!read) return weft::Error{read.error()};
+    weft_body with = read.value();
+    if (auto r = given({{"body.shape", with.shape}}); !r) return r;
+    const auto mass = weft::mass_of(*with.shape->shape, density);
+    if (!mass) return weft::Error{mass.error()};
+    write_mass(mass.value(), with);
+    write_struct(with, body);
+    return {};
+  });
+}
+
+weft_result weft_body_pose_of(const weft_cloth* cloth, uint32_t id, double position[3],
+                              double rotation[4]) {
+  return call([&]() -> weft::Result<void> {
+    if (auto r = given({{"cloth", cloth}, {"position", position}, {"rotation", rotation}}); !r)
+      return r;
+    const auto pose = cloth->cloth.body_pose(id);
+    if (!pose) return weft::Error{pose.error()};
+    write_vector(pose.value().position, position);
+    write_rotation(pose.value().rotation, rotation);
+    return {};
+  });
+}
+
+weft_result weft_body_velocity_of(const weft_cloth* cloth, uint32_t id, double linear[3],
+                                  double angular[3]) {
+  return call([&]() -> weft::Result<void> {
+    if (auto r = given({{"cloth", cloth}, {"linear", linear}, {"angular", angular}}); !r) return r;
+    const auto velocity = cloth->cloth.body_velocity(id);
+    if (!velocity) return weft::Error{velocity.error()};
+    write_vector(velocity.value().linear, linear);
+    write_vector(velocity.value().angular, angular);
+    return {};
+  });
+}
+
+weft_result weft_set_body_velocity(weft_cloth* cloth, uint32_t id, const double linear[3],
+                                   const double angular[3]) {
+  return call([&]() -> weft::Result<void> {
+    if (auto r = given({{"cloth", cloth}, {"linear", linear}, {"angular", angular}}); !r) return r;
+    return cloth->cloth.set_body_velocity(id, {vector_of(linear), vector_of(angular)});
+  });
+}
+
+weft_result weft_set_body_force(weft_cloth* cloth, uint32_t id, const double force[3],
+                                const double moment[3]) {
+  return call([&]() -> weft::Result<void> {
+    if (auto r = given({{"cloth", cloth}, {"force", force}, {"moment", moment}}); !r) return r;
+    return cloth->cloth.set_body_force(id, vector_of(force), vector_of(moment));
   });
 }
 

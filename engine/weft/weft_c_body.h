@@ -26,6 +26,9 @@ typedef struct weft_body { /* Body */
   double position[3];
   double rotation[4]; /* x, y, z, w */
   double thickness, friction;
+  double mass; /* Body::mass; 0: none, and the next two do not count */
+  double centre_of_mass[3];
+  double inertia[6];
 } weft_body;
 
 typedef struct weft_body_load { /* BodyLoad */
@@ -41,6 +44,8 @@ typedef struct weft_body_contact { /* BodyContact */
 } weft_body_contact;
 
 WEFT_API weft_result weft_init_body(weft_body* body, size_t size);
+/* Gives the body the mass of its shape at a density. */
+WEFT_API weft_result weft_give_mass(weft_body* body, double density);
 WEFT_API weft_result weft_init_body_load(weft_body_load* load, size_t size);
 WEFT_API weft_result weft_init_body_contact(weft_body_contact* contact, size_t size);
 
@@ -57,6 +62,15 @@ WEFT_API weft_result weft_place_body_vertices(weft_cloth* cloth, uint32_t id, si
 WEFT_API weft_result weft_switch_body(weft_cloth* cloth, uint32_t id, int on);
 WEFT_API weft_result weft_remove_body(weft_cloth* cloth, uint32_t id);
 WEFT_API weft_result weft_body_load_of(const weft_cloth* cloth, uint32_t id, weft_body_load* load);
+WEFT_API weft_result weft_body_pose_of(const weft_cloth* cloth, uint32_t id, double position[3],
+                                       double rotation[4]);
+WEFT_API weft_result weft_body_velocity_of(const weft_cloth* cloth, uint32_t id, double linear[3],
+                                           double angular[3]);
+WEFT_API weft_result weft_set_body_velocity(weft_cloth* cloth, uint32_t id, const double linear[3],
+                                            const double angular[3]);
+WEFT_API weft_result weft_set_body_force(weft_cloth* cloth, uint32_t id, const double force[3],
+                                         const double moment[3]);
+
 enum {
   WEFT_TORN_CONSTRAINT = 0,
   WEFT_TORN_SEAM = 1,

@@ -243,5 +243,41 @@ TEST_CASE("surfaces that follow tears are the same") {
   CHECK(changes > 0);
 }
 
+TEST_CASE("a body with a mass moves in C as in C++") {
+  Both b = CottonSheet().cloths();
+  const auto shape = build_shape(Ball{{}, 0.2}).value();
+  const double centre[3] = {};
+  const auto c_shape =
+      made<weft_shape>([&](weft_shape** out) { return weft_ball(centre, 0.2, out); });
+  auto body = initial(weft_init_body);
+  CHECK(body.mass == 0);
+  body.shape = c_shape.get();
+  body.position[0] = 0.5, body.position[1] = 0.3, body.position[2] = 0.5;
+  REQUIRE(weft_give_mass(&body, 20) == WEFT_OK);
+  const BodyMass mass = mass_of(*shape, 20).value();
+  CHECK(body.mass == mass.mass);
+  CHECK(body.inertia[2] == mass.inertia[2]);
+  std::uint32_t id = 0;
+  REQUIRE(weft_add_body(b.c.get(), &body, &id) == WEFT_OK);
+  REQUIRE(b.cpp.add_body({.shape = shape, .pose = {{0.5, 0.3, 0.5}, {}}, .mass = mass}));
+  const double linear[3] = {0.1, 0, 0}, angular[3] = {0, 1, 0}, force[3] = {0, 0, 0.2},
+               moment[3] = {};
+  REQUIRE(weft_set_body_velocity(b.c.get(), id, linear, angular) == WEFT_OK);
+  REQUIRE(b.cpp.set_body_velocity(id, {{0.1, 0, 0}, {0, 1, 0}}));
+  REQUIRE(weft_set_body_force(b.c.get(), id, force, moment) == WEFT_OK);
+  REQUIRE(b.cpp.set_body_force(id, {0, 0, 0.2}, {}));
+  for (int frame = 0; frame < 12; ++frame) step_both(b, 1. / 60);
+  double position[3], rotation[4], speed[3], spin[3];
+  REQUIRE(weft_body_pose_of(b.c.get(), id, position, rotation) == WEFT_OK);
+  REQUIRE(weft_body_velocity_of(b.c.get(), id, speed, spin) == WEFT_OK);
+  const Pose pose = b.cpp.body_pose(id).value();
+  CHECK(position[1] == pose.position.y);
+  CHECK(position[1] < 0.3);
+  CHECK(rotation[1] == pose.rotation.y);
+  CHECK(speed[2] == b.cpp.body_velocity(id).value().linear.z);
+  CHECK(spin[1] == b.cpp.body_velocity(id).value().angular.y);
+  CHECK(weft_body_velocity_of(b.c.get(), 9, speed, spin) == WEFT_REFUSED);
+}
+
 }  // namespace
 }  // namespace weft::test::engine_c_interface_same_parts
