@@ -45,6 +45,16 @@ void add_body(py::module_& m) {
   Fields<Pose> pose(m, "Pose", "Position and rotation of the coordinates of a body.");
   pose.field("position", &Pose::position, "m")
       .field("rotation", &Pose::rotation, "a quaternion x, y, z, w");
+  Fields<BodyMass> mass(m, "BodyMass", "The mass of a body that moves by itself.");
+  mass.field("mass", &BodyMass::mass, "kg")
+      .field("centre", &BodyMass::centre, "m, of mass, in the coordinates of the body")
+      .field("inertia", &BodyMass::inertia, "kg m^2, xx yy zz yz zx xy");
+  m.def(
+      "mass_of",
+      [](const Given<HeldShape>& shape, const Given<double>& density) {
+        return value_of(mass_of(*taken(shape, "shape").shape, taken(density, "density")));
+      },
+      py::arg("shape"), py::arg("density"), "The mass of a full ball, capsule or hull.");
   Fields<Body> body(m, "Body", "A body for Cloth.add_body.");
   body.property(
           "shape",
@@ -56,7 +66,11 @@ void add_body(py::module_& m) {
           "a BodyShape")
       .field("pose", &Body::pose, "where it is")
       .field("thickness", &Body::thickness, "m, at which it keeps particles")
-      .field("friction", &Body::friction, "Coulomb's");
+      .field("friction", &Body::friction, "Coulomb's")
+      .field("mass", &Body::mass, "a BodyMass of one that moves by itself, or None");
+  Fields<BodyVelocity> velocity(m, "BodyVelocity", "The velocity of a body that moves by itself.");
+  velocity.field("linear", &BodyVelocity::linear, "m/s, of its centre of mass")
+      .field("angular", &BodyVelocity::angular, "rad/s");
   py::class_<BodyLoad>(m, "BodyLoad", "The mean force and moment of the cloth on a body.")
       .def_readonly("force", &BodyLoad::force, "N")
       .def_readonly("moment", &BodyLoad::moment, "N m, about the position of its pose");

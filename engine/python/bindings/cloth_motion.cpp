@@ -246,6 +246,41 @@ void add_bodies(ClothClass& cloth) {
           },
           py::arg("id"), "The force and moment of the cloth on it in the last step.")
       .def(
+          "body_pose",
+          [](const HeldCloth& c, std::uint32_t id) {
+            const auto used = use(c);
+            return value_of(c.value.body_pose(id));
+          },
+          py::arg("id"), "Where it is.")
+      .def(
+          "body_velocity",
+          [](const HeldCloth& c, std::uint32_t id) {
+            const auto used = use(c);
+            return value_of(c.value.body_velocity(id));
+          },
+          py::arg("id"), "The velocity of one with a mass.")
+      .def(
+          "set_body_velocity",
+          [](HeldCloth& c, const Given<std::uint32_t>& id, const Given<BodyVelocity>& velocity) {
+            const auto which = taken(id, "id");
+            const auto to = taken(velocity, "velocity");
+            const auto used = use(c);
+            check(c.value.set_body_velocity(which, to));
+          },
+          py::arg("id"), py::arg("velocity"), "The velocity of one with a mass.")
+      .def(
+          "set_body_force",
+          [](HeldCloth& c, const Given<std::uint32_t>& id, const Given<Vec3>& force,
+             const Given<Vec3>& moment) {
+            const auto which = taken(id, "id");
+            const auto push = taken(force, "force");
+            const auto turn = taken(moment, "moment");
+            const auto used = use(c);
+            check(c.value.set_body_force(which, push, turn));
+          },
+          py::arg("id"), py::arg("force"), py::arg("moment"),
+          "N and N m; they act until others are set.")
+      .def(
           "body_contacts",
           [](const HeldCloth& c) {
             const auto used = use(c);

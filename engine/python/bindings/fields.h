@@ -4,6 +4,8 @@
 
 #include <pybind11/stl.h>
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -49,6 +51,10 @@ struct Expected<Vec3> {
 template <>
 struct Expected<Rotation> {
   static std::string text() { return "four numbers x, y, z, w"; }
+};
+template <std::size_t kCount>
+struct Expected<std::array<double, kCount>> {
+  static std::string text() { return "a list of " + std::to_string(kCount) + " numbers"; }
 };
 template <class V>
 struct Expected<std::optional<V>> {

@@ -70,6 +70,21 @@ class Kinds(unittest.TestCase):
                 self.assertTrue(np.allclose(contact["point"], top * UP, atol=1e-5))
                 self.assertGreater(contact["push"], 0)
 
+    def test_one_with_a_mass_falls_and_takes_the_caller_s_force(self):
+        cloth = particle((0, -9, 0))
+        ball = weft.build_shape(weft.Ball(radius=0.1))
+        mass = weft.mass_of(ball, 1000)
+        self.assertAlmostEqual(mass.mass, 4000 / 3 * math.pi * 1e-3)
+        body = cloth.add_body(weft.Body(shape=ball, pose=RAISED, mass=mass))
+        cloth.set_body_velocity(body, weft.BodyVelocity(linear=(1, 0, 0), angular=(0, 2, 0)))
+        cloth.set_body_force(body, (0, 0, 3 * mass.mass), (0, 0, 0))
+        run(cloth, 20)
+        self.assertTrue(np.allclose(cloth.body_pose(body).position, (0.2, 0.8, 0.06)))
+        self.assertTrue(np.allclose(cloth.body_velocity(body).linear, (1, -2, 0.6)))
+        self.assertTrue(np.allclose(cloth.body_velocity(body).angular, (0, 2, 0)))
+        with self.assertRaisesRegex(ValueError, "moves by itself"):
+            cloth.move_body(body, weft.Pose())
+
     def test_a_load_turns_its_body(self):
         cloth = particle((0.25, 0.155, -0.125))
         body = add(cloth, BOX)
