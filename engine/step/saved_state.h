@@ -11,7 +11,7 @@
 namespace weft {
 
 /// The version changes with whatever is written here, and in the functions visit_fields.
-inline constexpr Kind kSavedState{{'w', 'e', 'f', 't', 's', 't', 'a', 't'}, "state", 12};
+inline constexpr Kind kSavedState{{'w', 'e', 'f', 't', 's', 't', 'a', 't'}, "state", 13};
 std::vector<std::byte> save_state(const State& state);
 
 /// A state that was read, and is one of the model.

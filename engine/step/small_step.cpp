@@ -69,7 +69,11 @@ class Frame {
     const double rest = passes_.left() - passes_.share_of_substep(places_.left());
     places_.end_substep();
     const bool mends = to_tolerance && mends_now();
-    if (mends) sweep_until_few_are_out(tuning::kMended, rest);
+    if (mends) {
+      solver_.judge(team_);
+      if (s_.model->has_laws()) law_error_ = solver_.law_error_of_out();
+      sweep_while_many_are_out(tuning::kMended, rest);
+    }
     spheres_.find_contacts(team_);
     if (mends) {
       repair(rest);
@@ -109,7 +113,8 @@ class Frame {
   void give_way() {
     const double rest = std::max(0.0, passes_.left() - passes_.most_of_substep());
     sweep_beyond(0);
-    sweep_until_few_are_out(0, rest);
+    solver_.judge(team_);
+    sweep_while_many_are_out(0, rest);
     repair(rest);
     solver_.end_contacts(team_);
     passes_.end();
@@ -166,6 +171,8 @@ class Frame {
   FrameCourse course() const {
     return {.motion_error = solver_.motion_error(), .beyond = passes_.taken(), .left = left_};
   }
+  /// See StepReport. Where a sweep leaves nothing to mend the step leaves what the sweep does.
+  double law_error() const { return std::max(law_error_, report_.max_error); }
   std::uint32_t passed_particle() const { return spheres_.passed_particle(); }
 
  private:
@@ -210,9 +217,8 @@ class Frame {
     passes_.count(work);
     passes_.count_contacts(work, solver_.take_contact_visits());
   }
-  /// After a sweep. rest: as above.
-  void sweep_until_few_are_out(double to, double rest) {
-    solver_.judge(team_);
+  /// After constraints were judged. rest: as above.
+  void sweep_while_many_are_out(double to, double rest) {
     while (passes_.left() - rest >= 1 && passes_.are_many(solver_.count_out())) {
       sweep_beyond(to);
       solver_.judge(team_);
@@ -242,6 +248,7 @@ class Frame {
   FrameForces forces_{s_, plan_, places_};
   FrameSpheres spheres_{s_, places_, report_};
   double left_ = 0;                   // FrameCourse
+  double law_error_ = 0;              // a strain, of the last sweep, before it was mended
   double give_ = 0;                   // s^2, give_per_mass()
   double elastic_energy_before_ = 0;  // J, in the beginning
   double yielded_ = 0;                // J
@@ -320,6 +327,7 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
   });
   trial.substeps = plan.substeps;
   report.max_bending_error = std::max(report.max_bending_error, s.small_steps->bending_error());
+  if (s.model->has_laws()) report.law_error = std::max(report.law_error, frame.law_error());
   if (trial.status != Status::converged && !attempt.is_last) {
     trial.outcome = Outcome::rejected;
     return trial;

@@ -304,7 +304,8 @@ void fall_asleep(State& s, StepReport& report) {
               .worst_seam = report.worst_seam,
               .held_apart = report.held_apart,
               .worst_held = report.worst_held,
-              .max_rail_gap = report.max_rail_gap};
+              .max_rail_gap = report.max_rail_gap,
+              .law_error = report.law_error};
 }
 
 /// J. Where bodies overlap, and wherever else a step misses its tolerance, they push particles to

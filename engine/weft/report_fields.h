@@ -109,6 +109,8 @@ inline constexpr std::tuple kReportFields{
     ReportField{"untangling_work", &StepReport::untangling_work, OverSteps::sum, "J"},
     ReportField{"max_rail_gap", &StepReport::max_rail_gap, OverSteps::largest, "m"},
     ReportField{"torn", &StepReport::torn, OverSteps::sum, "what broke when the step ended"},
+    ReportField{"law_error", &StepReport::law_error, OverSteps::largest,
+                "the largest error of a law that carried load"},
 };
 inline constexpr std::size_t kReportFieldCount = std::tuple_size_v<decltype(kReportFields)>;
 

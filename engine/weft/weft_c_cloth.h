@@ -54,6 +54,7 @@ typedef struct weft_report { /* StepReport */
   uint32_t worst_held;
   double untangling_work, max_rail_gap;
   int torn;
+  double law_error;
 } weft_report;
 
 /* JobSystem. Set both functions or neither; they must not throw. NULL in place of the struct is the

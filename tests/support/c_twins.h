@@ -77,11 +77,11 @@ inline void check_equal(const weft_report& c, const StepReport& r) {
   CHECK(std::array{c.max_strain, c.rms_strain, c.max_shear, c.max_error, c.max_penetration,
                    c.max_anchor_error, c.max_seam_gap, c.seam_work, c.motion_error, c.energy_lost,
                    c.pin_work, c.body_work, c.friction_work, c.max_bending_error, c.untangling_work,
-                   c.max_rail_gap} ==
+                   c.max_rail_gap, c.law_error} ==
         std::array{r.max_strain, r.rms_strain, r.max_shear, r.max_error, r.max_penetration,
                    r.max_anchor_error, r.max_seam_gap, r.seam_work, r.motion_error, r.energy_lost,
                    r.pin_work, r.body_work, r.friction_work, r.max_bending_error, r.untangling_work,
-                   r.max_rail_gap});
+                   r.max_rail_gap, r.law_error});
   CHECK(std::array{c.worst_constraint, c.worst_element, c.failed_particle, c.passed_particle,
                    c.worst_seam, c.worst_held} == std::array{r.worst_constraint, r.worst_element,
                                                              r.failed_particle, r.passed_particle,

@@ -265,7 +265,7 @@ void LaneStore::judge_springs(Team& team) {
   const LanePoints points = this->points(false);
   const double tolerance = now_.local_tolerance();
   for (const std::uint32_t c : layout_.serial) {
-    if (breaks_law(model_.constraints, points, now_.law_step(), tolerance, c))
+    if (violation_of_law(model_.constraints, points, now_.law_step(), c) > tolerance)
       now_.passes.look_near(c);
   }
 }

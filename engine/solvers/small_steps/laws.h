@@ -50,24 +50,20 @@ LawVisit visit_law(const ConstraintStore& s, const Points& points,
   return visit;
 }
 
-/// Whether a constraint breaks its law by more than the tolerance, which is a strain.
+/// By how much a constraint breaks its law, over rest_length.
 template <class Points>
-bool breaks_law(const ConstraintStore& s, const Points& points, const LawStep& step,
-                double tolerance, std::uint32_t c) {
-  if (!step.is_kept(s, c)) return false;
-  const double violation = visit_law(s, points, step.springs, c).violation();
-  return std::abs(violation) > tolerance * s.rest_length[c];
+double violation_of_law(const ConstraintStore& s, const Points& points, const LawStep& step,
+                        std::uint32_t c) {
+  if (!step.is_kept(s, c)) return 0;
+  return std::abs(visit_law(s, points, step.springs, c).violation()) / s.rest_length[c];
 }
 
-/// The largest violation of all laws, over rest_length.
+/// The largest violation of all laws.
 template <class Points>
 double largest_violation(const ConstraintStore& s, const Points& points, const LawStep& step) {
   double most = 0;
-  for (std::uint32_t c = 0; c < s.size(); ++c) {
-    if (!step.is_kept(s, c)) continue;
-    const double violation = visit_law(s, points, step.springs, c).violation();
-    most = std::max(most, std::abs(violation) / s.rest_length[c]);
-  }
+  for (std::uint32_t c = 0; c < s.size(); ++c)
+    most = std::max(most, violation_of_law(s, points, step, c));
   return most;
 }
 

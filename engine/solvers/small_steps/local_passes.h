@@ -59,6 +59,9 @@ class LocalPasses {
   /// fabric what membrane_laws.h does.
   template <class Points>
   LocalWork run(Points& points, const SphereContacts& contacts, const LocalLimits& limits);
+  /// The error of the item's laws, a strain. A rigid constraint has none.
+  template <class Points>
+  double law_error(const Points& points, const LawStep& step, std::uint32_t item) const;
   std::size_t bytes() const;
 
  private:
@@ -84,6 +87,15 @@ class LocalPasses {
   std::vector<std::uint64_t> now_, next_;         // per slot
   std::vector<std::uint32_t> present_, waiting_;  // slots whose masks may not be empty
 };
+
+template <class Points>
+double LocalPasses::law_error(const Points& points, const LawStep& step, std::uint32_t item) const {
+  if (item >= items_.constraints)
+    return violation_of_element(model_.membrane, points, step, item - items_.constraints);
+  const ConstraintStore& s = model_.constraints;
+  const bool is_law = s.has_springs() && s.compliance[item] > 0;
+  return is_law ? violation_of_law(s, points, step, item) : 0;
+}
 
 template <class Points>
 bool LocalPasses::relax(Points& points, std::uint32_t item, const LocalLimits& limits) {

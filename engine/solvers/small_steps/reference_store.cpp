@@ -209,9 +209,9 @@ void ReferenceStore::take_past_along(Team&) {
 void ReferenceStore::judge_springs(Team&) {
   const Points points = this->points(false);
   const double tolerance = now_.local_tolerance();
-  for (std::uint32_t c = 0; c < model_.constraints.size(); ++c) {
-    if (breaks_law(model_.constraints, points, now_.law_step(), tolerance, c)) out_.push_back(c);
-  }
+  for (std::uint32_t c = 0; c < model_.constraints.size(); ++c)
+    if (violation_of_law(model_.constraints, points, now_.law_step(), c) > tolerance)
+      out_.push_back(c);
 }
 
 void ReferenceStore::relax_chain(std::span<const std::uint32_t> slots,

@@ -105,6 +105,16 @@ class StoredSmallSteps final : public SmallSteps {
     return store_.count_out() + std::ssize(linkage_.out());
   }
 
+  /// Cloth that shivers at rest has damping that is as large as its load in one substep and nothing
+  /// in the mean; cloth that moves is damped. So it is the smaller one of the two.
+  double law_error_of_out() override {
+    const LawStep damped = now_.law_step();
+    LawStep undamped = damped;
+    undamped.springs.damping = undamped.damping_of_triangles = 0;
+    const double most = law_error_of_out(damped);
+    return model_.damping.stretch > 0 ? std::min(most, law_error_of_out(undamped)) : most;
+  }
+
   /// Constraints that a sweep found out of tolerance have been relaxed since, and so have their
   /// neighbours: all of these are looked at again.
   LocalWork repair(const SphereContacts& contacts, std::int64_t most_visits, Team& team) override {
@@ -216,6 +226,16 @@ class StoredSmallSteps final : public SmallSteps {
     return static_cast<const StoredSmallSteps&>(steps).store_;
   }
 
+  double law_error_of_out(const LawStep& step) {
+    const Points points = store_.points(false);
+    double most = 0;
+    const auto look_at = [&](std::uint32_t item) {
+      most = std::max(most, now_.passes.law_error(points, step, item));
+    };
+    store_.for_each_out(look_at);
+    std::ranges::for_each(layout_.serial, look_at);
+    return most;
+  }
   /// Contacts come last.
   void sweep(const Relaxation& by, Team& team) {
     store_.sweep_yarns(by, team, [&] { store_.hold_anchors(team); });

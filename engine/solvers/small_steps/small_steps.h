@@ -62,6 +62,8 @@ class SmallSteps {
   virtual void judge(Team& team) = 0;
   /// Constraints that were found out of tolerance.
   virtual std::int64_t count_out() const = 0;
+  /// The largest error of those of them that are laws; a strain.
+  virtual double law_error_of_out() = 0;
   virtual LocalWork repair(const SphereContacts& contacts, std::int64_t most_visits,
                            Team& team) = 0;
   /// After each substep's repair: which seams it has closed.

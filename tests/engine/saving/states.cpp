@@ -471,10 +471,10 @@ TEST_CASE("the format is the one of its version") {
                 static_cast<unsigned long long>(checksum(state)), model.size(),
                 static_cast<unsigned long long>(checksum(model)));
   }
-  CHECK(state[8] == std::byte{12});
+  CHECK(state[8] == std::byte{13});
   CHECK(model[8] == std::byte{50});
-  CHECK(state.size() == 13125);
-  CHECK(checksum(state) == 0xd5af35f90386ebad);
+  CHECK(state.size() == 13133);
+  CHECK(checksum(state) == 0x472c740726e60691);
   CHECK(model.size() == 820);
   CHECK(checksum(model) == 0xb9d416b68377c552);
 }

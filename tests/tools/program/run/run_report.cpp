@@ -78,7 +78,7 @@ TEST_CASE("the JSON has every figure, per frame where its name says so") {
   const Json expected = Json::parse(R"({
     "scene": "somewhere", "particles": 16, "constraints": 10, "spheres": 17,
     "springs": 21, "membrane_elements": 37, "bending_elements": 23, "anchors": 31, "seams": 0, "tethers": 0,
-    "open_seams": 0, "max_seam_gap": 0, "seam_work": 0, "late_seams": 0, "held_apart": 0, "untangling_work": 0, "max_rail_gap": 0, "torn": 0, "air_triangles": 29, "rejected": 15,
+    "open_seams": 0, "max_seam_gap": 0, "seam_work": 0, "late_seams": 0, "held_apart": 0, "untangling_work": 0, "max_rail_gap": 0, "torn": 0, "law_error": 0, "air_triangles": 29, "rejected": 15,
     "max_error": 0.25,
     "solver": "auto", "solver_used": "yarn", "scheme": "paper", "scheme_fallbacks": 8,
     "backend": "simd", "anticipate_products": false, "isa": "avx2", "threads": 3,
