@@ -140,14 +140,16 @@ void check_all(const Loaded& loaded, const std::vector<Vec3>& forces = {}) {
   }
 }
 
-TEST_CASE("a ball under pressure is as large as its law says, or its reports tell") {
+TEST_CASE("a ball under pressure is as large as its law says, or its reports tell" *
+          doctest::test_suite("long")) {
   for (const double stiffness : {4e3, 1e5}) {
     CAPTURE(stiffness);
     check_all(ball(stiffness));
   }
 }
 
-TEST_CASE("a strip that is pulled is as long as its law says, or its reports tell") {
+TEST_CASE("a strip that is pulled is as long as its law says, or its reports tell" *
+          doctest::test_suite("long")) {
   for (const double stiffness : {4e3, 1e5}) {
     for (const bool woven : {false, true}) {
       CAPTURE(stiffness);

@@ -186,7 +186,8 @@ Resting rest(Cloth& cloth, const Free& body, int rate, int seconds) {
 
 TEST_CASE(
     "a ball in a sheet on four pins comes to rest, weighs its weight and hangs as deep in short "
-    "substeps") {
+    "substeps" *
+    doctest::test_suite("slow")) {
   constexpr std::uint32_t kSize = 13;
   for (const double mass : {0.02, 0.3, 1.0}) {
     CAPTURE(mass);
@@ -236,7 +237,8 @@ SceneDescription bag() {
   return scene;
 }
 
-TEST_CASE("a ball in a closed bag that hangs stays in it and rests by its weight") {
+TEST_CASE("a ball in a closed bag that hangs stays in it and rests by its weight" *
+          doctest::test_suite("long")) {
   const SceneDescription scene = bag();
   for (const int rate : kRates) {
     CAPTURE(rate);
@@ -250,7 +252,8 @@ TEST_CASE("a ball in a closed bag that hangs stays in it and rests by its weight
   }
 }
 
-TEST_CASE("a ball that rises lifts a sheet by its tethers, and pulls with what it has too much") {
+TEST_CASE("a ball that rises lifts a sheet by its tethers, and pulls with what it has too much" *
+          doctest::test_suite("slow")) {
   constexpr std::uint32_t kSize = 15;
   SceneDescription scene = sheet(kSize, 0.6, 0.25, [](Material& m) {
     m.damping_stretch = 0.01;
