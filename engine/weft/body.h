@@ -1,12 +1,12 @@
-/// Bodies that cloth lies on, slides over and is pushed by: the caller moves them, or they have a
-/// mass and move by themselves. Part of weft.h.
+/// Bodies that the cloth collides with. The caller moves them, or they have a mass and move by
+/// themselves. Part of weft.h.
 ///
 ///   auto leg = weft::build_shape(weft::Capsule{hip, knee, 0.09, 0.06});  // m, in its coordinates
 ///
 ///   auto id = cloth.add_body({.shape = leg.value(), .pose = pose, .friction = 0.4});
 ///   cloth.move_body(id.value(), next_pose);     // each frame: it travels there during the step
 ///   auto report = cloth.step(1.0 / 60);
-///   weft::BodyLoad load = cloth.body_load(id.value()).value();  // what the cloth did to it
+///   weft::BodyLoad load = cloth.body_load(id.value()).value();  // the force of the cloth on it
 ///
 /// In every substep the cloth is kept one thickness away from the surface, with Coulomb friction.
 /// Bodies are solid: a particle that is inside when a step begins comes out at 2 m/s at most, and
@@ -22,26 +22,27 @@
 ///   auto report = cloth.step(1.0 / 60);
 ///   weft::Pose where = cloth.body_pose(id.value()).value();
 ///
-/// It falls and turns as a rigid body. The cloth loses what it gives to the body. Such a body does
-/// not touch other bodies, does not feel the air, and touches the particles of the cloth alone,
-/// fixed ones included. One that is much heavier than the cloth under it needs short substeps. A
-/// host with a physics engine moves its bodies by move_body and gives them body_load instead.
+/// It falls and turns as a rigid body. The momentum that it gains from the cloth, the cloth loses.
+/// Such a body collides with particles of the cloth alone, fixed ones included: not with other
+/// bodies. It has no drag. A body much heavier than the cloth under it needs short substeps. A
+/// program with a physics engine calls move_body instead, and applies body_load to its own bodies.
 ///
 /// Planes, balls, capsules and hulls touch the particles of the cloth, by a contact in closed form.
 /// Fast particles are stopped too, if the last search (every 2 ms) found them near. The search
 /// predicts where particles go; tests/README.md says which bodies are too fast for that. An edge or
-/// a corner of a body between the particles of a coarse cloth is not seen.
+/// a corner of a body that passes between the particles of a coarse cloth is not detected.
 ///
 /// A ball, capsule or hull that fits between the particles of the cloth touches the whole surface
 /// of the cloth, as a triangle mesh does, and costs as much. It fits where its greatest width
 /// is less than 2/sqrt(3) of the longest side of a triangle of the cloth, or its width is less
-/// than half of the largest height of a triangle, as rods and blades are. Both are at rest, and
-/// of a thread they are its length. Its thickness counts, on both sides. The width of a capsule is
-/// that of its wider end. The edges of a hull are round then, and a capsule pushes across its axis.
+/// than half of the largest height of a triangle, as those of rods and blades are. These lengths
+/// are at rest; for a thread both are its length. Its thickness counts, on both sides. The width of
+/// a capsule is that of its wider end. Such a hull has round edges, and such a capsule pushes
+/// across its axis.
 ///
 /// Triangle meshes touch the whole surface of the cloth (SceneDescription::surface): particles
 /// against triangles both ways, and edges against edges. Every 2 ms each pair that may have met is
-/// verified, more often if the mesh is fast, and less often if it is slow and stands alone. So a
+/// verified: more often if the mesh is fast, and less often if it is slow and the only body. So a
 /// cloth that does not cross the mesh when a step begins does not cross it when the step ends.
 /// Where this is not possible, as between two bodies that close on each other, the report says so
 /// (StepReport::intersecting).
@@ -144,9 +145,9 @@ struct BodyVelocity {
 struct Body {
   std::shared_ptr<const BodyShape> shape;
   Pose pose{};  ///< where it is
-  /// m, at least 0: the distance at which it keeps particles. Two bodies that leave less room than
-  /// the sum of their thicknesses share it in proportion, and StepReport::max_penetration reports
-  /// only the depth beyond that.
+  /// m, at least 0: particles are kept at this distance. Two bodies share a gap that is smaller
+  /// than the sum of their thicknesses in proportion to these, and StepReport::max_penetration
+  /// reports only the depth beyond that.
   double thickness = 1e-3;
   /// Coulomb's coefficient, at least 0. The coefficient of a contact is the geometric mean of this
   /// one and the cloth's (SceneDescription::friction).

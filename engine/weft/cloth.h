@@ -92,7 +92,7 @@ struct PressureNow {
 
 /// New limits of an anchor.
 struct AnchorLimit {
-  double max_distance = 0;  ///< m, as Anchor::max_distance; infinite: the particle is let go
+  double max_distance = 0;  ///< m, as Anchor::max_distance; infinite: the particle is released
   bool backstop = true;     ///< whether the backstop of the description, if there is one, counts
 };
 
@@ -243,7 +243,7 @@ class WEFT_API Cloth {
   /// normals: one per anchor, of any length but 0 if there is a backstop; empty: as they are.
   Result<void> move_anchors(std::span<const Vec3> points, std::span<const Vec3> normals = {});
   /// Sets the limits of all anchors, in the order of the description: it loosens or tightens them,
-  /// lets particles go or takes hold of them again. A largest distance changes evenly during the
+  /// releases particles or holds them again. A largest distance changes evenly during the
   /// next step, so no particle is set in motion; from infinity it begins at the particle's present
   /// distance. An anchor of distance 0 holds as a fixed particle does: a change from 0 to more, and
   /// back, takes as long as change().
@@ -251,29 +251,29 @@ class WEFT_API Cloth {
   /// Sets the limits of one anchor.
   Result<void> limit_anchor(std::uint32_t anchor, const AnchorLimit& limit);
   /// Multiplies all largest distances by `scale` (finite, at least 0) from the next step on: a
-  /// smaller scale lets the cloth of a character move less by itself. Distances of 0 and infinite
+  /// smaller scale keeps the cloth of a character closer to its body. Distances of 0 and infinite
   /// ones stay.
   Result<void> scale_anchors(double scale);
 
   /// Releases seams, by their numbers in the description: from the next step on they hold nothing,
-  /// open ones either. Edges and faces at the two particles still do not collide (SelfContact).
-  /// Seams that were released already stay so. On an error none is released.
+  /// nor do open ones pull. Edges and faces at the two particles still do not collide
+  /// (SelfContact). Seams that were released already stay so. On an error none is released.
   Result<void> release_seams(std::span<const std::uint32_t> seams);
-  /// Closes seams that were released: each draws its particles together again, from where they are,
+  /// Closes seams that were released: each pulls its particles together again, from where they are,
   /// in its time and by its force. Other seams stay as they are. On an error none is closed.
   Result<void> close_seams(std::span<const std::uint32_t> seams);
 
   /// Moves the whole cloth at once by a share, 0 to 1, of a rigid motion (of its translation and
   /// its angle), without accelerating it: positions, fixed particles, anchors and the solver's
   /// memory move and turn; velocities turn and gain nothing. Gravity, forces and wind belong to the
-  /// world and stay. The air drags at the cloth in the next step as if the cloth had moved this way
-  /// during that step.
+  /// world and stay. The drag of the next step is that of a cloth which moves this way during
+  /// that step.
   ///
-  /// To let the cloth feel only the fraction s of its character's acceleration, call
+  /// To reduce the effect of a character's acceleration on its cloth to the fraction s, call
   /// carry(motion, 1 - s) before the step, then move pins and anchors. Velocities are then relative
   /// to the character.
   Result<void> carry(const RigidMotion& motion, double share);
-  /// carry with share 1, but without drag of the air.
+  /// carry with share 1, but without the drag of this motion.
   Result<void> teleport(const RigidMotion& motion);
 
   /// Adds a body, which is there from the next step on, and returns its id; ids are not used again.

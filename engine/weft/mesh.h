@@ -46,8 +46,8 @@ struct Material {
   /// N/m, > 0: a strip of width b, pulled evenly, tears at the force strength b. Infinite: it never
   /// does (Tear).
   double strength = std::numeric_limits<double>::infinity();
-  /// 1/m, > 0: cloth that is bent more keeps a crease. Let go, it rests at the curvature that it
-  /// was bent to, less this one. Infinite: it never yields (BendingElement).
+  /// 1/m, > 0: cloth that is bent more keeps a crease. Once released it rests at the curvature
+  /// to which it was bent, less this one. Infinite: it never yields (BendingElement).
   double bending_yield = std::numeric_limits<double>::infinity();
   /// At least 0. Beyond its yield the moment of bending rises by this times as much as the crease:
   /// bent to the curvature c, cloth keeps (c - bending_yield) / (1 + bending_hardening).
@@ -57,7 +57,7 @@ struct Material {
   /// measures that width as 2HB, in gf cm/cm: 0.01 of 2HB is 4.9e-5 N (Kawabata, The
   /// Standardization and Analysis of Hand Evaluation, 1980).
   double bending_friction = 0;
-  /// 1/m, > 0: the change of curvature that brings friction from 0 to all of it. On the way the
+  /// 1/m, > 0: the change of curvature at which friction reaches its full value. Up to there the
   /// moment rises as that of a spring of the stiffness bending_friction / bending_slip, N m.
   double bending_slip = 10;
 };
@@ -109,8 +109,8 @@ enum class Ropes : std::uint8_t { none, diagonals, all };
 ///
 /// Faces of five and more corners are cut into triangles around the first corner; they should be
 /// convex. Lines are threads that do not stretch. A line along the edge of a face is ignored.
-/// Threads may hang off the cloth, and a mesh may have threads alone. They touch what cloth
-/// touches, all along their length (SceneDescription::surface).
+/// Threads may hang off the cloth, and a mesh may have threads alone. They collide as
+/// cloth does, all along their length (SceneDescription::surface).
 ///
 /// An edge of more than two faces stretches as the sum of them, and does not bend. Faces without
 /// area are left out. If several faces have the same corners, as in files of two-sided surfaces,
@@ -135,7 +135,7 @@ struct MeshDescription {
   /// Direction of the warp of a material, in the shape at rest (with flat places (u, v, 0)): one
   /// for all faces, or one per face, of any length. Only the part in the plane of the face counts.
   /// A face that has no direction, or one across its plane, continues the faces beside it. Empty:
-  /// As said above; with flat places along v.
+  /// as said above; with flat places along v.
   std::vector<Vec3> warp;
   std::vector<std::uint32_t> pins;   ///< vertices whose particles are fixed
   std::optional<Material> material;  ///< none: rigid edges

@@ -1,4 +1,5 @@
-/// The report of a step: its status, its work, its errors, and all that broke. Part of weft.h.
+/// The report of a step: its status, its work, its errors, and the elements that broke. Part of
+/// weft.h.
 ///
 ///   const weft::StepReport report = cloth.step(1.0 / 60).value();
 ///   if (report.status != weft::Status::converged) std::puts(name(report.status).data());
@@ -69,9 +70,9 @@ WEFT_API std::string_view name(Stage);
 /// Times of contacts with bodies, in ms of the thread that called the step. Contacts within local
 /// passes count as part of these passes, and are in none of the three figures.
 struct ContactMs {
-  double find = 0;    ///< which particles, faces and edges may touch
+  double find = 0;    ///< the search for particles, faces and edges that may touch
   double sweep = 0;   ///< pushing contacts apart, after each sweep over the constraints
-  double verify = 0;  ///< whether anything went through; stopping it; the depth of contacts
+  double verify = 0;  ///< checks that nothing went through; stops what did; depth of contacts
   bool operator==(const ContactMs&) const = default;
 };
 
@@ -122,9 +123,9 @@ struct StepReport {
   /// each other.
   int zones = 0;
   /// Triangles and threads of the cloth that cross a triangle mesh when the step ends, and
-  /// particles inside one. It is 0 unless the step began so, a body was put there, or bodies close
-  /// on the cloth from both sides. The edges and faces of these triangles do not collide until they
-  /// are out; their particles do.
+  /// particles inside one. It is 0 unless the step began so, a body was teleported there, or bodies
+  /// close on the cloth from both sides. The edges and faces of these triangles do not collide
+  /// until they are out; their particles do.
   int intersecting = 0;
   int self_contacts = 0;  ///< pairs of features of the cloth that touch each other (SelfContact)
   /// Pairs of triangles of the cloth that cross each other when the step ends, and of a triangle
@@ -171,18 +172,18 @@ struct StepReport {
   double untangling_work = 0;           ///< J, work of SelfContact::untangle
   /// m, of sliders from their rails: bounded by contact_tolerance (Slider).
   double max_rail_gap = 0;
-  int torn = 0;  ///< all that broke when this step ended (Cloth::torn)
+  int torn = 0;  ///< elements that broke when this step ended (Cloth::torn)
   /// The largest error of a law, as in `max_error`, with the tension that carried the load in the
   /// last substep; small_steps, with springs or triangles of fabric. Corrections at the end of a
-  /// step bring tensions to their laws, and `max_error` is the error after that; but cloth that
-  /// rests is not moved by them. So this one tells whether substeps that you give are short enough
-  /// for the load of cloth at rest: sheets are off as a whole by a quarter of it at most, chains of
-  /// elastic ropes by half. The status does not depend on it, since cloth that moves as it should
-  /// has more than ten tolerances in single steps.
+  /// step bring tensions to their laws, and `max_error` is the error after that; but they do not
+  /// move cloth at rest. So this error tells whether substeps that you give are short enough for
+  /// the load of cloth at rest: the whole sheet is off by a quarter of it at most, a chain of
+  /// elastic ropes by half. The status does not depend on it: in single steps of correct motion it
+  /// may exceed ten tolerances.
   double law_error = 0;
 };
 
-/// Something that broke when a step ended (Tear).
+/// An element that broke when a step ended (Tear).
 struct Torn {
   Tear kind = Tear::constraint;
   std::uint32_t index = 0;  ///< of the constraint, the seam, the anchor, or the particle of a sheet

@@ -52,24 +52,26 @@ struct Constraint {
 };
 
 /// Cloth that tears. A constraint, a triangle of fabric, a closed seam or an anchor may have a
-/// strength. One that carries more than that, in the mean of a step, breaks when the step ends. If
-/// several are overloaded side by side only that with the largest multiple of its strength breaks
-/// then, since that relieves the others: a crack grows by one edge in each step.
+/// strength. It breaks at the end of a step if its mean load in the step exceeds the strength. If
+/// neighbours are overloaded, only the one with the largest ratio of load to strength breaks, since
+/// that relieves the others: a crack grows by one edge per step.
 ///
-/// constraint: its strength becomes 0. So a rope or a thread parts.
-/// seam: its strength becomes 0. Faces and edges at its particles touch nothing of each other until
-///   they are apart (SelfContact). Then it is gone, unless a seam that is not broken follows it.
-/// anchor: its particle is let go, as by Cloth::limit_anchor with an infinite distance.
+/// constraint: its strength becomes 0. Ropes and threads break in this way.
+/// seam: its strength becomes 0. Faces and edges at its two particles do not collide with each
+/// other
+///   until they are apart (SelfContact). Then it is gone, unless an unbroken seam follows it.
+/// anchor: its particle is released, as by Cloth::limit_anchor with an infinite distance.
 /// sheet: one of its particles becomes two, each with the triangles, constraints and the mass of
 ///   its side. The crack runs along edges of `surface`, as nearly across the largest tension as
-///   they allow; not along the diagonal of a four-sided cell. It is made where a constraint along
-///   an edge of `surface` is overloaded, or where triangles of fabric are: there the mean tension
-///   around a particle counts. The new particle has the next number, and a broken seam joins it to
-///   the old one, which keeps its sliders and rails. A fixed one loses the fabric that pulls at it.
+///   they allow, but not along the diagonal of a four-sided cell. It starts where a constraint
+///   along an edge of `surface` is overloaded, or where the mean tension of the triangles of fabric
+///   around a particle is too large. The new particle has the next number, and a broken seam joins
+///   it to the old one, which keeps its sliders and rails. A fixed particle keeps only fabric that
+///   does not pull at it.
 ///
-/// A break takes the elastic energy of what breaks, and adds none. Solver small_steps only;
-/// `automatic` becomes small_steps. Tethers do not break. A gas whose triangles no longer enclose
-/// it has lost its pressure.
+/// A break dissipates the elastic energy of the broken element, and adds none. Solver small_steps
+/// only; `automatic` becomes small_steps. Tethers do not break. A gas whose triangles no longer
+/// enclose it has lost its pressure.
 enum class Tear : std::uint8_t { constraint, seam, anchor, sheet };
 
 /// A bending spring over three or four particles. Its weights sum to zero, so that
@@ -81,9 +83,9 @@ enum class Tear : std::uint8_t { constraint, seam, anchor, sheet };
 /// bending of two triangles with the areas A0 and A1 and the stiffness k (Bergou et al.,
 /// "A Quadratic Bending Model for Inextensible Surfaces", 2006).
 ///
-/// rest has no sign: a turn of 60 degrees is as good as one of -60. A hinge of four particles has a
-/// signed fold. Its edge joins particles 0 and 1, its faces reach from there to 2 and 3, and its
-/// energy is |d - fold n|^2 / (2 compliance). The normal n of both faces is along
+/// rest has no sign: angles of 60 and -60 degrees have the same energy. A hinge of four particles
+/// has a signed fold. Its edge joins particles 0 and 1, its faces reach from there to 2 and 3, and
+/// its energy is |d - fold n|^2 / (2 compliance). The normal n of both faces is along
 ///
 ///     (x1 - x0) x (weights[3] (x3 - x0) - weights[2] (x2 - x0))
 ///
@@ -91,20 +93,18 @@ enum class Tear : std::uint8_t { constraint, seam, anchor, sheet };
 /// counter-clockwise, if their weights are positive. Beyond 147 degrees n is shorter than 1: a fold
 /// that turns all the way over changes its sign without a jump.
 ///
-/// A hinge may yield, as cloth does that is folded and pressed. Then the angle t between its faces
-/// is measured (0: flat), and the angle t0 at which it rests: fold = 2 arm sin(t0 / 2). Elements
-/// that meet at an edge's end yield together, since none of them knows in which direction the cloth
-/// is bent there. With
+/// A hinge may yield, as cloth does when it is folded and pressed. Let t be the angle between its
+/// faces (0: flat), and t0 its angle at rest: fold = 2 arm sin(t0 / 2). Elements that meet at an
+/// end of an edge yield together, since each sees only a part of the curvature there. With
 ///
 ///     r^2 = (sum of arm^2 (t - t0)^2 / compliance) / (sum of yield^2 / compliance)
 ///
-/// over them, a hinge yields where r > 1 + hardening w. Then t0 follows t, until r = 1 + hardening
-/// w, where w is the sum of all falls of r that its yielding has caused. So a hinge by itself rests
-/// where it was bent to, less the angle yield / arm. Where several elements are over the same
-/// particles, the first ones yield together, and so do the second ones. To yield takes energy, and
-/// gives none back.
-/// Beyond 147 degrees a hinge that yields counts |d| in place of d . n: it folds flat like any
-/// other, and rests there.
+/// over them, a hinge yields if r > 1 + hardening w. Then t0 follows t until r = 1 + hardening w.
+/// Here w is the sum of all reductions of r by yielding so far. So a single hinge comes to rest at
+/// the angle to which it was bent, less yield / arm. If several elements have the same particles,
+/// the first ones yield together, and so do the second ones. Yielding dissipates energy.
+/// Beyond 147 degrees a hinge that yields uses |d| in place of d . n: it folds flat like any other,
+/// and rests there.
 struct BendingElement {
   std::array<std::uint32_t, 4> particles{};  ///< all different; the last may be kNoIndex
   /// The last is 0 where its particle is kNoIndex. All are 0 where a tear has cut the element.
@@ -165,17 +165,18 @@ struct Damping {
 /// small_steps the force is found once or a few times a step, else once a substep. However long the
 /// step, it cannot make light cloth faster than the air.
 ///
-/// Drag and lift act on single triangles, and do not hold a canopy open: where its skirt lies along
-/// the flow they have no component along the normal. The air that a canopy or a sail catches is at
-/// rest in it, and presses on all of it equally. So each piece of the triangles (those that share
-/// particles) is subject to the pressure
+/// Drag and lift act on single triangles, and do not hold a canopy open: where its skirt is
+/// parallel to the flow they have no component along the normal. The air inside a canopy or a sail
+/// is at rest, and its pressure is the same everywhere. So each connected piece of the triangles is
+/// subject to the pressure
 ///
 ///     -1/2 density ram |u| u      along the normals,   u = v . S / |S|
 ///
 /// S is the sum of the triangles' areas times normals, which is that of the mouth of a canopy, and
-/// v the mean velocity of the piece relative to the wind, by area. It presses from the side that
-/// the flow meets, whichever way the triangles face. The force is 1/2 density A ram u^2 on a flat
-/// plate, besides its drag, and 0 on a closed surface. With small_steps it follows the normals.
+/// v the mean velocity of the piece relative to the wind, weighted by area. The pressure acts from
+/// the side that faces the flow, whichever way the triangles face. The force is 1/2 density A ram
+/// u^2 on a flat plate, besides its drag, and 0 on a closed surface. With small_steps it follows
+/// the normals.
 struct Air {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   double density = 1.2;  ///< kg/m^3
@@ -187,17 +188,17 @@ struct Air {
 
 /// A difference of pressure across triangles of `surface`. It pushes them along their normals,
 /// towards the side from which their corners are seen counter-clockwise; a negative one pushes the
-/// other way. It follows the normals in every substep. Its work is the pressure times the volume
-/// that the triangles sweep. Several pressures on one triangle add up. Solver small_steps only;
-/// `automatic` becomes small_steps.
+/// other way. Its direction follows the normals in every substep. Its work is the pressure times
+/// the volume that the triangles sweep. Several pressures on one triangle add up. Solver
+/// small_steps only; `automatic` becomes small_steps.
 ///
 /// The pressure of a gas falls as its volume grows, at a constant temperature:
 ///
 ///     (ambient + pressure now) (volume now) = (ambient + pressure) volume
 ///
 /// Its triangles must enclose it: as many of them run along an edge in one direction as in the
-/// other, and their normals point outwards. A given pressure above k / 2 R inflates a ball without
-/// end: threads of k N/m cannot hold it.
+/// other, and their normals point outwards. A given pressure above k / 2 R inflates a ball of
+/// threads of k N/m without limit.
 struct Pressure {
   double pressure = 0;                        ///< Pa, above that of the air around it
   std::vector<std::uint32_t> triangles = {};  ///< by their numbers in `surface`; empty: all
@@ -208,8 +209,8 @@ struct Pressure {
   bool operator==(const Pressure&) const = default;
 };
 
-/// Keeps a particle near a point that an animation moves (Cloth::move_anchors), as the skin of a
-/// character carries its clothes:
+/// Keeps a particle near a point that an animation moves (Cloth::move_anchors), such as a point of
+/// a character's skin:
 ///
 ///     |x - point| <= max_distance
 ///     |x - centre| >= backstop_radius,
@@ -229,8 +230,8 @@ struct Anchor {
   double max_distance = 0;       ///< m, at least 0; infinite: no limit
   double backstop_distance = 0;  ///< m, of the surface of the backstop behind the point; >= 0
   double backstop_radius = 0;    ///< m; 0: there is no backstop; infinite: it is a plane
-  /// N, > 0; infinite: it never lets go. It carries the pull of constraints, fabric and seams at
-  /// the particle, and the particle's weight, while the particle is at max_distance (Tear).
+  /// N, > 0; infinite: it never breaks. Its load is the force of constraints, fabric and seams
+  /// on the particle, and the particle's weight, while the particle is at max_distance (Tear).
   double strength = std::numeric_limits<double>::infinity();
 };
 
@@ -238,11 +239,12 @@ struct Anchor {
 ///
 ///     |x - pin| <= length
 ///
-/// It holds as max_distance of an Anchor does, whose point is the pin, wherever that is moved
-/// (StepReport::max_anchor_error). With the length of the cloth between the two it says nothing
-/// that the cloth does not say. But it carries their load to the pin at once, where the constraints
-/// between them take many substeps (Kim, Chentanez and Mueller-Fischer, "Long Range Attachments",
-/// 2012). A tether is off while its pin is not fixed or its particle is. Solver small_steps only.
+/// It acts as max_distance of an Anchor whose point is the pin, wherever the pin is moved
+/// (StepReport::max_anchor_error). A tether as long as the cloth between the two adds no
+/// restriction, since the cloth is as long. But it transmits load to the pin at once, while the
+/// constraints between them need many substeps (Kim, Chentanez and Mueller-Fischer, "Long Range
+/// Attachments", 2012). A tether is off while its pin is not fixed or its particle is. Solver
+/// small_steps only.
 struct Tether {
   std::uint32_t particle = 0;  ///< in at most one tether, and in no anchor
   std::uint32_t pin = 0;
@@ -251,20 +253,20 @@ struct Tether {
 
 /// A particle that slides along a rail: curtain rings on a rod, beads on a wire, eyelets along a
 /// drawstring, a cord in a hem. The rail leads through the particles
-/// SceneDescription::rail_particles[first] to [last]. Its particles may be fixed, so that it stands
-/// or moves where they are moved, or free: then it feels the force of what slides on it, and
-/// momentum is conserved. It is a smooth curve through them, and closed where the first particle is
+/// SceneDescription::rail_particles[first] to [last]. Its particles may be fixed: then it moves
+/// only where they are moved. They may be free: then sliding particles act on the rail with equal
+/// and opposite forces. It is a smooth curve through them, and closed where the first particle is
 /// the last one, too. Its ends are stops.
 ///
 /// The particle is kept on the rail to Settings::contact_tolerance (StepReport::max_rail_gap).
-/// Along the rail Coulomb's friction holds it: up to `friction` times the force across the rail. So
-/// a cord whose particles all slide on one rail, around a drum, holds e^(friction angle) times the
-/// tension at its other end. So does a cord that is the rail, where it turns over a particle by up
-/// to 30 degrees; at sharper turns its links catch there.
+/// Coulomb friction acts along the rail, up to `friction` times the force across it. So a cord
+/// whose particles all slide on one rail, around a drum, holds e^(friction angle) times the tension
+/// at its other end. So does a cord that is the rail, where it turns over a particle by up to 30
+/// degrees; at sharper turns its links catch there.
 ///
-/// It begins at the nearest point of the rail, and is drawn there when the first step begins. Cloth
-/// that touches itself (SelfContact) keeps its thickness from constraints of a rail, sliders too.
-/// Solver small_steps only.
+/// It begins at the nearest point of the rail, and is moved there when the first step begins. With
+/// SelfContact the cloth, sliders included, stays one thickness away from the constraints of a
+/// rail. Solver small_steps only.
 struct Slider {
   std::uint32_t particle = 0;         ///< in at most one slider, and not on its rail
   std::uint32_t first = 0, last = 0;  ///< first < last, in SceneDescription::rail_particles
@@ -275,37 +277,39 @@ struct Slider {
 /// together along the straight line between them in the time `time`, never faster. If max_force is
 /// too small for that, they take longer. Then the seam is closed: it holds any force up to its
 /// strength. An open seam does not count as an error until its time is over
-/// (StepReport::open_seams, late_seams). Positions that are written apart from each other open it
-/// again. Cloth::release_seams undoes it. Faces and edges of the cloth at one of the two particles
+/// (StepReport::open_seams, late_seams). It opens again if its particles are written to places
+/// apart. Cloth::release_seams undoes it. Faces and edges of the cloth at one of the two particles
 /// do not collide with those at the other (SelfContact). Solver small_steps only.
 struct Seam {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
   double time = 1;                                             ///< s, > 0
   double max_force = std::numeric_limits<double>::infinity();  ///< N, > 0, while it is open
-  /// N, at least 0, of the closed seam; infinite: it never breaks. 0: it is broken, and draws
+  /// N, at least 0, of the closed seam; infinite: it never breaks. 0: it is broken, and pulls
   /// nothing together (Tear).
   double strength = std::numeric_limits<double>::infinity();
 };
 
-/// Cloth that touches itself: all cloths and pieces of a scene, by the triangles of `surface` and
-/// by threads (SceneDescription::surface). Layers stay one thickness apart, with friction. Features
-/// that are nearer than that in the shape at rest keep nearly the distance that they have there. So
-/// a thickness may be larger than an edge; but then all neighbours are in contact, folds are
-/// stiffer, and a step takes long. Half an edge is a good bound (perf/tried.md has figures).
+/// Contact of the cloth with itself: of all cloths and pieces of a scene, by the triangles of
+/// `surface` and by threads (SceneDescription::surface). Layers stay one thickness apart, with
+/// friction. Features that are nearer than that in the shape at rest keep nearly the distance that
+/// they have there. So a thickness may be larger than an edge; but then all neighbours are in
+/// contact, folds are stiffer, and a step takes long. Use at most half an edge (perf/tried.md has
+/// figures).
 /// Seams join the cloth in the shape at rest, whether they are open or closed.
 ///
 /// A cloth that does not cross itself when a step begins does not cross itself when it ends,
 /// however fast it is: each step verifies this, and stops features that would go through each
-/// other. Layers that lie on each other may be nearer than the thickness by a twentieth, and under
-/// a blow by more for a while; StepReport::max_penetration does not count that. Triangles that
-/// cross at the start do not collide with each other until they are apart (StepReport::tangled).
+/// other. Layers that rest on each other may be nearer than the thickness by a twentieth, and by
+/// more for a while after an impact; StepReport::max_penetration does not count that. Triangles
+/// that cross at the start do not collide with each other until they are apart
+/// (StepReport::tangled).
 ///
-/// With `untangle` triangles that cross are drawn apart, at 0.2 m/s. Where the line in which they
-/// cross cuts off a part of the cloth, this part comes through: the one with the fewest fixed
-/// particles, the lightest of several. Elsewhere the line becomes shorter. The work of this is
-/// StepReport::untangling_work. Triangles beside those that cross may come to cross, too, for a
-/// while; all others are kept apart as always. Where pins hold both sides the crossing may stay.
+/// With `untangle` triangles that cross are pulled apart at 0.2 m/s. If the line of intersection
+/// cuts off a part of the cloth, the part with the fewest fixed particles is pulled through, or the
+/// lightest of several such parts. Otherwise the line becomes shorter. StepReport::untangling_work
+/// is the work of this. Triangles beside those that cross may cross, too, for a while; all others
+/// are kept apart as always. If pins hold both sides, the crossing may stay.
 /// Cloth that does not cross itself has the same bits with `untangle` and without.
 ///
 /// Layers that begin exactly in one plane, or whose positions are written so, are moved apart by
@@ -317,9 +321,9 @@ struct Seam {
 /// Solver small_steps only; `automatic` becomes small_steps.
 struct SelfContact {
   bool on = false;
-  double thickness = 1e-3;  ///< m, from middle to middle of two layers; > 0 where it is on
+  double thickness = 1e-3;  ///< m, between the middles of two layers; > 0 if it is on
   double friction = 0.3;    ///< Coulomb's coefficient between layers; at least 0
-  bool untangle = false;    ///< whether triangles that cross are drawn apart
+  bool untangle = false;    ///< whether triangles that cross are pulled apart
 
   bool operator==(const SelfContact&) const = default;
 };
@@ -368,8 +372,8 @@ struct SceneDescription {
 
   std::vector<Tether> tethers;
   /// At least 0. Finite: each free particle that has neither an anchor nor a tether has a tether to
-  /// its nearest pin along constraints and sides of triangles of fabric. It is longer than the way
-  /// there, at rest, by this share. When pins are released or fixed (Cloth::change) the nearest
+  /// its nearest pin along constraints and sides of triangles of fabric. It is longer than the path
+  /// to it, at rest, by this share. When pins are released or fixed (Cloth::change) the nearest
   /// ones count. Infinite: there are none but `tethers`.
   double tether_slack = std::numeric_limits<double>::infinity();
 

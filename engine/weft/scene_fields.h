@@ -257,7 +257,7 @@ inline constexpr std::tuple kPartFields<SelfContact>{
     PartField{"friction", &SelfContact::friction, Values::not_negative,
               &weft_scene::self_contact_friction, "Coulomb's, between layers"},
     PartField{"untangle", &SelfContact::untangle, Values::ruled, &weft_scene::self_contact_untangle,
-              "whether triangles that cross are drawn apart"},
+              "whether triangles that cross are pulled apart"},
 };
 
 template <>
@@ -294,7 +294,7 @@ inline constexpr std::tuple kPartFields<ModelInfo>{
     PartField{"surface_triangles", &ModelInfo::surface_triangles, Values::ruled,
               &weft_model_info::surface_triangles, "that meshes touch"},
     PartField{"air_triangles", &ModelInfo::air_triangles, Values::ruled,
-              &weft_model_info::air_triangles, "that feel the air"},
+              &weft_model_info::air_triangles, "with drag and lift"},
     PartField{"spheres", &ModelInfo::spheres, Values::ruled, &weft_model_info::spheres,
               "particles that others collide with"},
     PartField{"colours", &ModelInfo::colours, Values::ruled, &weft_model_info::colours,

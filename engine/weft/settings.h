@@ -125,21 +125,21 @@ struct Settings {
   /// sweep per substep. The corrections after that take at most the time of 6 further sweeps per
   /// substep, or of automatic substeps if that is longer; max_iterations lowers this bound. A
   /// quarter of the time of contacts with meshes during these corrections counts towards the bound.
-  /// The search for contacts and their verification do not count. Whether a
-  /// given number is enough for the load of fabric at rest, StepReport::law_error tells alone. With
-  /// other solvers each substep is solved to the tolerances.
+  /// The search for contacts and their verification do not count. Whether a given number is
+  /// enough for the load of fabric at rest, only StepReport::law_error tells. With other solvers
+  /// each substep is solved to the tolerances.
   ///
-  /// A chosen number, with small_steps: in closed form, up to 1024. With other solvers: from the
-  /// motion (rattle takes up to 2.5 times as many as paper) and, with yarn, from the load of heavy
-  /// particles and, with scheme paper, of spheres; then at most max_iterations / 8. On the
-  /// reference backend, and with `iterations`: 1.
+  /// A chosen number: with small_steps it follows in closed form, up to 1024. With other solvers it
+  /// follows from the motion (rattle takes up to 2.5 times as many as paper) and, with yarn, from
+  /// the load of heavy particles and, with scheme paper, of spheres; then at most max_iterations
+  /// / 8. On the reference backend, and with `iterations`: 1.
   int substeps = kAutomaticSubsteps;
   /// Advanced. 0: iterate to the tolerance. K > 0: exactly K iterations per substep, whatever the
   /// error; nothing is skipped. gauss_seidel then renews frozen directions once per substep, other
   /// solvers in every iteration.
   int iterations = 0;
   /// Everyday. > 0, an upper bound on the work of a step: substeps, attempts and schemes together.
-  /// Games should set it to a few times the usual work: the next frame does what one leaves undone.
+  /// Games should set it to a few times the usual work: the next frame does the work that is left.
   /// (For the same time in each frame: `iterations` and `substeps`, solver yarn.)
   ///
   /// With small_steps and given substeps: passes in addition to one sweep per substep, in any

@@ -81,7 +81,7 @@ typedef struct weft_scene { /* SceneDescription */
   const uint32_t* spheres;
   const double* radii; /* particle_count of them, or NULL: there are no spheres */
 
-  int self_contact; /* yes or no: whether layers of the cloth keep off each other */
+  int self_contact; /* yes or no: whether layers of the cloth collide */
   double self_contact_thickness, self_contact_friction;
 
   double air_ram;
@@ -90,7 +90,7 @@ typedef struct weft_scene { /* SceneDescription */
 
   const double* bending_folds; /* or NULL: 0; m, of hinges */
 
-  int self_contact_untangle; /* yes or no: whether triangles that cross are drawn apart */
+  int self_contact_untangle; /* yes or no: whether triangles that cross are pulled apart */
 
   size_t tether_count;
   const uint32_t* tether_particles; /* 2 each: particle, pin */

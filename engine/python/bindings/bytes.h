@@ -21,7 +21,7 @@ inline pybind11::bytes whole(const pybind11::buffer& buffer) {
   if (copy == nullptr) throw pybind11::error_already_set();
   return pybind11::reinterpret_steal<pybind11::bytes>(copy);
 }
-/// Valid as long as the object, which nobody can change.
+/// Valid as long as the object, which is immutable.
 inline std::span<const std::byte> bytes_of(const pybind11::bytes& bytes) {
   const std::string_view view = bytes;
   return std::as_bytes(std::span(view));
