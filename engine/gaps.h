@@ -1,4 +1,4 @@
-/// Gaps of a cloth between its particles, and what fits through them.
+/// Gaps of a cloth between its particles, and the bodies that fit through them.
 #pragma once
 
 namespace weft {

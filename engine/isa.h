@@ -1,4 +1,4 @@
-/// Which instruction set a cloth runs on.
+/// The instruction set of a cloth.
 #pragma once
 
 #include <weft/weft.h>

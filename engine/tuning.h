@@ -22,11 +22,11 @@ inline constexpr double kOmega = 0.8;
 /// not damped.
 inline constexpr double kLeastDamping = 0.5;
 /// Local passes look at a constraint whose strain exceeds this share of the tolerance. The rest is
-/// room for what corrections of its neighbours add.
+/// margin for what corrections of its neighbours add.
 inline constexpr double kLocalShare = 0.99;
 /// The share of the tolerance to which mending, local passes and sweeps beyond the first of a
 /// substep, takes what is out of it (sweeps after the last substep take it all the way). Less makes
-/// fewer visits, and a larger blow of each: cloth that is mended in every substep does not come to
+/// fewer visits, each of which moves more: cloth that is mended in every substep does not come to
 /// rest.
 inline constexpr double kMended = 0.8;
 /// s. So often it is looked for what may meet a body: a search costs a tenth of a substep, and what
@@ -74,11 +74,11 @@ inline constexpr double kContactSpare = 0.3;
 /// Other pairs are left to their neighbours, and to the verification.
 inline constexpr double kContactBeyond = 0.2, kContactLean = 0.6, kContactPassing = 0.5;
 /// In thicknesses: the margin of boxes that hold points until a step ends. Fluttering cloth leaves
-/// them, and its candidates are renewed. While positions are put right boxes of an interval have it
+/// them, and its candidates are renewed. While positions are projected boxes of an interval have it
 /// in place of kContactSpare, since nothing tells where points go: the first frame of `outfit` 40
 /// has 223 intervals in place of 266.
 inline constexpr double kContactWideSpare = 0.5;
-/// The same while bodies stand, and positions are put right.
+/// The same while bodies stand, and positions are projected.
 inline constexpr double kContactStandingSpare = 1.5;
 /// In reaches of an interval: what tubes hold beyond the way of a particle. It is about time and
 /// the order of pairs alone (perf/tried.md has all of these ablations): with 3 the tunic of a body
@@ -110,10 +110,11 @@ inline constexpr double kCoplanarWay = 1e-6;
 /// tenth of their distance each interval, and one through the other from there (300 loose pieces in
 /// a box).
 inline constexpr double kStaysApart = 1e-8;
-/// m/s, at which what crosses is drawn apart (untangling.h). Pockets that begin tilted through a
-/// shirt, held on both sides of it, hang on at 0.05 and 0.1 and come out at 0.2, in 0.4 s.
+/// m/s, at which triangles that cross are pulled apart (untangling.h). Pockets that begin tilted
+/// through a shirt, held on both sides of it, hang on at 0.05 and 0.1 and come out at 0.2, in 0.4
+/// s.
 inline constexpr double kUntanglingSpeed = 0.2;
-/// s, in which it comes to that speed: particles beside a contour are drawn by five times their
+/// s, in which it comes to that speed: particles beside a contour are pulled by five times their
 /// weight. It is not shorter than the longest substep, so that the length of substeps does not
 /// count.
 inline constexpr double kUntanglingTime = 4e-3;
@@ -132,7 +133,7 @@ inline constexpr int kPlaneSteps = 16;
 /// pair is deep: at 0 the tip of a body throws a sheet that it touches beside its pins.
 inline constexpr double kLeastTouchWeight = 0.05;
 /// In thicknesses: what is nearer when an interval is over, and was not expected, is no rounding;
-/// and the rounds in which such pairs are put right before the rest is verified. Without either two
+/// and the rounds in which such pairs are corrected before the rest is verified. Without either two
 /// hard cases are 0.3 and 0.5 mm too deep and do not say so; with one round none.
 inline constexpr double kLate = 0.99;
 inline constexpr int kLateRounds = 3;
@@ -143,10 +144,10 @@ inline constexpr int kLateRounds = 3;
 inline constexpr double kMeetingLeft = 0.1;
 inline constexpr double kMeetingStep = 0.9;
 inline constexpr int kMeetingSteps = 200;
-/// Rounds of blows to pairs that went through each other, and then of rigid zones. Without blows
-/// `mesh_appears_in_cloth` gains 0.1 J; with four rounds it does not. Without zones
+/// Rounds of impacts of pairs that went through each other, and then of rigid zones. Without
+/// impacts `mesh_appears_in_cloth` gains 0.1 J; with four rounds it does not. Without zones
 /// `layers_in_a_ball_into_a_corner` ends with three crossings.
-inline constexpr int kBlowRounds = 8;
+inline constexpr int kImpactRounds = 8;
 inline constexpr int kZoneRounds = 12;
 /// The same of cloth that touches itself: after kZoneRounds zones grow by their neighbours, too.
 inline constexpr int kClothZoneRounds = 60;
@@ -164,8 +165,6 @@ inline constexpr double kContactRecovery = 0.02;
 /// is held by both, and not pressed out. A ball of triangles that presses a sheet 6 cm into a box
 /// of triangles at 240 Hz: with 0.3, 0.4, 0.45, 0.5, 0.7 it moves by 0.5, 0.4, 0.6, 98, 200 m/s.
 inline constexpr double kAgainst = 0.4;
-/// s, of a substep in which bodies stand: what is under a surface comes out wherever it is.
-inline constexpr double kAtOnce = 1e6;
 /// Compliance of a yarn's constraints in a sweep, relative to the diagonal of its matrix. That of a
 /// yarn that two fixed particles hold is singular where it is straight: a smaller compliance lifts
 /// banners, a larger one is softer, and farther from the true motion. All other yarns have only
@@ -216,7 +215,7 @@ inline constexpr Patience kPlacingPatience{0.9, 8};
 /// m/s, that misplaced fabric reaches in the longest substep: ten times what falls does. Cloth that
 /// moves and is put back as it was must not count as misplaced.
 inline constexpr double kMisplacedSpeed = 0.5;
-/// m/s, the speed of its fastest particle at which it is left, below which nobody sees it start.
+/// m/s, the speed of its fastest particle at which it is left, below which its start is not seen.
 inline constexpr double kPlacedSpeed = 0.005;
 /// Bending is solved for n substeps at once while (n h)^2 times a bound of the stiffest swing
 /// (BendingRows::stiffest) is at most kBendingGroup, and n at most kLongestGroup
@@ -263,14 +262,15 @@ inline constexpr double kFactorTime = 4;
 /// While more than this share of all constraints is out of tolerance a substep sweeps again, which
 /// is cheaper than local passes.
 inline constexpr double kManyOut = 0.02;
-/// Substeps of fabric are shorter in the next frame where putting right what the last one left
-/// takes more than the first share of the time of all sweeps, and longer below the second
+/// Substeps of fabric are shorter in the next frame where corrections of the last one's errors
+/// take more than the first share of the time of all sweeps, and longer below the second
 /// (perf/tried.md).
 inline constexpr double kMuchMended = 0.5;
 inline constexpr double kLittleMended = 0.04;
 /// In tolerances: where the error of longer substeps was predicted to be less, and they had to
 /// become shorter, longer ones are not blamed. At 0 a patch on a pinned sheet remains in 5 substeps
-/// at 240 Hz, now in 3; at 0.5 it goes to and fro for three seconds at 60 Hz (perf/tried.md).
+/// at 240 Hz, now in 3; at 0.5 it changes back and forth for three seconds at 60 Hz
+/// (perf/tried.md).
 inline constexpr double kLeastBlamed = 0.125;
 /// s. Sweeps become stiffer by e in no less than this time. At once, a sheet that falls on a taut
 /// cord flies up by 28 cm; by 2.4 cm at 6 ms, 1.7 at 7 and 1.5 at 9. Above 7 ms cloth that a ball
@@ -292,7 +292,7 @@ inline constexpr double kLocalVisitOfTriangle = 20;
 /// sweeps, in sweeps for each. Less leaves more to later frames; more takes longer.
 inline constexpr double kPassesBeyond = 6;
 /// The same of contacts: to look at a pair or to visit a contact in lanes, and in double (12 and
-/// 300 ns). They count by a share of that where a frame is put right: all of it would leave a
+/// 300 ns). They count by a share of that where a frame is corrected: all of it would leave a
 /// garment in the air that is put on, none of it lets a hopeless one take 20 s.
 inline constexpr double kVisitsOfLook = 2;
 inline constexpr double kVisitsOfTouch = 50;
@@ -337,7 +337,7 @@ inline constexpr double kLeastTolerance = 1e-3;
 inline constexpr double kNearlyEqualMasses = 100;
 inline constexpr double kUnequalMasses = 1e4;
 /// A free sphere is light if it has at most this many times the mass of a particle that it may
-/// meet: the blow of a heavier one when it lands takes small steps long to pass on.
+/// meet: small steps take long to pass on the impact of a heavier one.
 inline constexpr double kLightSphere = 10;
 
 // -------------------------------------------------------------------------------- the control
@@ -386,7 +386,7 @@ inline constexpr double kEnergyRounding = 1e-9;
 inline constexpr double kYarnGoal = 0.003;
 inline constexpr double kRattleGoal = 1e-4;
 /// Taut spans are given the lengths of the prediction up to this share of the permitted strain.
-/// More leaves the solver less room; less takes their sag away.
+/// More leaves the solver less margin; less takes their sag away.
 inline constexpr double kHeldShare = 0.8;
 /// A Newton step follows a sweep that leaves more than this share of the error, if the strain is
 /// below kNewtonStrain: with larger strains directions turn too far for a linear system.
@@ -423,9 +423,9 @@ inline constexpr double kFarBelow = 0.3;
 inline constexpr double kLeastCosine = 0.1;
 /// Blocks are woven if a family has at least this share of all particles in rows of fours, if this
 /// share of the other families' rows is in whole patches, and if the rows of memory have at most
-/// kMostRoom lanes for each particle. Otherwise quads are at least as fast.
+/// kMostLanesPerParticle lanes for each particle. Otherwise quads are at least as fast.
 inline constexpr double kLeastWoven = 0.75;
-inline constexpr std::size_t kMostRoom = 2;
+inline constexpr std::size_t kMostLanesPerParticle = 2;
 /// A patch is transposed as a whole if each of its lanes has at least this many particles in it.
 inline constexpr int kLeastOfPatch = 4;
 
@@ -435,7 +435,7 @@ inline constexpr int kLeastOfPatch = 4;
 /// that later steps have to remove.
 inline constexpr double kDirectGoal = 1e-5;
 /// In units of the tolerance: smaller errors are not solved for. Larger ones within the tolerance
-/// are, once, or they would grow until a later step had to remove them in one blow.
+/// are, once, or they would grow until a later step had to remove all of them at once.
 inline constexpr double kNegligibleError = 1e-6;
 /// Solves. Two or three are usual.
 inline constexpr Patience kDirectPatience{0.85, 4};

@@ -63,7 +63,8 @@ struct Falling {
     const double h = std::min(0.005, substep_length(model->small_steps().load, x.view(),
                                                     {.acceleration = 10}, settings.tolerance));
     solver->begin(x.view(), v.view(), model->gravity, {},
-                  {.h = h, .substeps = kSubsteps, .omega = tuning::kOmega, .placed = true}, team);
+                  {.dt_substep = h, .substeps = kSubsteps, .omega = tuning::kOmega, .placed = true},
+                  team);
     for (int k = 0; k < kSubsteps; ++k) {
       solver->advance(team);
       solver->sweep(team);
@@ -189,13 +190,13 @@ void run_bending(benchmark::State& state, const Shared& shared, simd::Isa isa, i
   kernels::AlignedVector<float> base = quads_of(*model), u(base.size());
   bending.measure_base(base.data(), team);
   // Cloth that is soft in a substep, and too long a substep for a solution to stand for several.
-  const FramePlan plan{.h = 2e-3, .substeps = std::numeric_limits<int>::max()};
+  const FramePlan plan{.dt_substep = 2e-3, .substeps = std::numeric_limits<int>::max()};
   for (std::size_t k = 0; k < u.size(); ++k) u[k] = k % 4 == 1 ? 1e-4f * std::sin(float(k)) : 0;
   const kernels::AlignedVector<float> start = u;
   for (auto _ : state) {
     std::ranges::copy(start, u.begin());
     bending.begin(plan, u.data(), false);  // without a guess
-    bending.bend(u.data(), u.data(), plan.h * plan.h, team);
+    bending.bend(u.data(), u.data(), plan.dt_substep * plan.dt_substep, team);
   }
   const double footprint =
       static_cast<double>(bending.bytes() + model->small_steps().bending.bytes());

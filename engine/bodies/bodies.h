@@ -1,4 +1,4 @@
-/// The bodies of a cloth: where they are, where they travel to, and what the cloth does to them.
+/// The bodies of a cloth: their places, their motions, and the loads of the cloth on them.
 #pragma once
 
 #include <weft/body.h>

@@ -4,21 +4,20 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/tuning.h"
-
 namespace weft {
 
 using kernels::Vector;
 
-void BodyClock::begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands) {
+void BodyClock::begin(std::span<const TravellingBody> bodies, double dt_substep, int substeps,
+                      bool stands) {
   bodies_.assign(bodies.begin(), bodies.end());
-  h_ = h;
+  dt_substep_ = dt_substep;
   substeps_ = substeps;
   done_ = 0;
   interval_ = interval_left_ = 0;
   stands_ = stands;
   motions_.resize(bodies.size());
-  const double per_second = stands ? 0 : 1 / (h * substeps);
+  const double per_second = stands ? 0 : 1 / (dt_substep * substeps);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const TravellingBody& body = bodies[i];
     const reference::Placement at = body.travel.at(0);
@@ -29,14 +28,16 @@ void BodyClock::begin(std::span<const TravellingBody> bodies, double h, int subs
                    .spin = per_second * body.travel.turn(),
                    .thickness = body.thickness,
                    .friction = stands ? 0 : body.friction,
-                   .h = this->h()};
+                   .h = this->dt_substep()};
   }
 }
 
-double BodyClock::h() const { return stands_ ? tuning::kAtOnce : h_; }
+double BodyClock::dt_substep() const {
+  return stands_ ? std::numeric_limits<double>::infinity() : dt_substep_;
+}
 
 void BodyClock::begin_interval(double time) {
-  const double substeps = std::max(1.0, std::floor(time / h_));
+  const double substeps = std::max(1.0, std::floor(time / dt_substep_));
   interval_ = static_cast<int>(std::min<double>(substeps, substeps_ - done_));
   interval_left_ = interval_;
 }

@@ -1,4 +1,4 @@
-/// Where bodies are in each substep of a step.
+/// The places of bodies in each substep of a step.
 #pragma once
 
 #include <span>
@@ -11,9 +11,9 @@ namespace weft {
 
 class BodyClock {
  public:
-  /// stands: bodies stay where they begin, have no friction, and what is under their surface comes
-  /// out at once. So positions are put right that were given.
-  void begin(std::span<const TravellingBody> bodies, double h, int substeps, bool stands);
+  /// stands: bodies stay where they begin, have no friction, and particles under their surface come
+  /// out at once. Written positions are projected in this way.
+  void begin(std::span<const TravellingBody> bodies, double dt_substep, int substeps, bool stands);
   /// To the next substep.
   void advance();
 
@@ -44,9 +44,10 @@ class BodyClock {
   /// The share of the step that is over some substeps from now.
   double share_after(int substeps) const { return share(done_ + substeps); }
   bool stands() const { return stands_; }
-  double time() const { return h_ * substeps_; }  // s, of the step
-  /// s, of a substep; while bodies stand so long that what is under a surface comes out at once.
-  double h() const;
+  double time() const { return dt_substep_ * substeps_; }  // s, of the step
+  /// s, of a substep. It is infinite while bodies stand: a particle under a surface comes out at
+  /// once, and no way is a velocity.
+  double dt_substep() const;
   std::size_t bytes() const {
     return motions_.capacity() * sizeof(motions_[0]) + bodies_.capacity() * sizeof(bodies_[0]);
   }
@@ -58,7 +59,7 @@ class BodyClock {
 
   std::vector<TravellingBody> bodies_;  // their own: contacts are read when bodies may be gone
   std::vector<reference::BodyMotion> motions_;
-  double h_ = 0;
+  double dt_substep_ = 0;
   int substeps_ = 1, done_ = 0;
   int interval_ = 0, interval_left_ = 0;  // substeps
   bool stands_ = false;

@@ -1,4 +1,4 @@
-/// How a pose becomes another one in the time of a step.
+/// The motion from one pose to another in the time of a step.
 #pragma once
 
 #include <weft/body.h>

@@ -1,6 +1,6 @@
-/// Shapes that may fit between the particles of a cloth, as surfaces that its edges and faces
-/// touch, too. A ball is a point, and a capsule a thread, in the middle of what is solid. A hull is
-/// its faces. The push of a capsule whose radius changes is across its axis.
+/// Shapes that may fit between the particles of a cloth, as surfaces for contacts with its edges
+/// and faces, too. A ball is a point with a radius, a capsule a thread with a radius, and a hull is
+/// its faces. A capsule whose radius changes pushes across its axis.
 #pragma once
 
 #include <span>

@@ -1,8 +1,8 @@
-/// Stage 2 of an interval: which pairs of features may meet at all. They are looked for once a
-/// step, by tubes, which hold all places that points are expected to come to until it ends.
-/// When the next interval begins candidates are renewed of the triangles whose corners have left
-/// theirs, and of no others. Those of points that leave the boxes of an interval are looked for
-/// when it ends (verify.h). So candidates follow from the state in which a step begins.
+/// Stage 2 of an interval finds the candidates: pairs of features that may meet at all. The search
+/// is done once a step, by tubes, which hold all places to which points are expected to come until
+/// it ends. When the next interval begins, only candidates of triangles whose corners have left
+/// their tubes are renewed. Points that leave the boxes of an interval are searched when it ends
+/// (verify.h). So candidates follow from the state in which a step begins.
 #pragma once
 
 #include <array>

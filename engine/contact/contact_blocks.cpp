@@ -60,7 +60,7 @@ void Contacts::gather_known() {
   known_.begin();
   for (std::size_t i = 0; i < keys_.size(); ++i) {
     if (keys_[i] == kNoKey) continue;
-    const Multiplier m = is_aside_ ? aside_[i] : multiplier(i);
+    const Multiplier m = are_saved_ ? saved_[i] : multiplier(i);
     if (m[0] > 0) known_.add(keys_[i], m);
   }
   for (std::size_t i = 0; i < memory_.keys.size(); ++i) {
@@ -80,7 +80,7 @@ void Contacts::retire(std::size_t contact) {
 }
 
 void Contacts::find(const ContactPoints& points, const NearContacts& near) {
-  take_back();
+  restore_multipliers();
   if (near.anew) {
     gather_known();
     clear();
@@ -235,7 +235,7 @@ void Contacts::set_normal(std::size_t contact, Vector normal) {
   to.z[contact % kLanes] = static_cast<float>(normal.z);
 }
 
-/// Its points are nobody's, and have no mass. Kernels know it by its thickness.
+/// Its points belong to no surface, and have no mass. Kernels know it by its thickness.
 void Contacts::leave_free(std::size_t block, std::size_t lane) {
   const auto nobody = static_cast<std::uint32_t>(known_as_.size() + lane);
   for (std::size_t k = 0; k < 4; ++k)

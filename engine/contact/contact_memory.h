@@ -1,4 +1,5 @@
-/// The multipliers that contacts leave to the next substep: a part of the state of a cloth.
+/// The multipliers of contacts for the warm start of the next substep: a part of the state of a
+/// cloth.
 #pragma once
 
 #include <algorithm>

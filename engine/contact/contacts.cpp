@@ -40,7 +40,7 @@ void Contacts::clear() {
   active_.clear();
   active_blocks_.clear();
   active_colours_.clear();
-  is_begun_ = is_aside_ = false;
+  is_begun_ = are_saved_ = false;
 }
 
 Multiplier Contacts::multiplier(std::size_t contact) const {
@@ -117,9 +117,9 @@ void Contacts::begin_substep(const ContactPoints& points, ContactParticles& part
       kernels_.freeze(freeze, are_edges, begin + first, begin + last);
     });
   }
-  bear_threads();
+  offset_slack_of_threads();
   is_begun_ = true;
-  is_aside_ = false;
+  are_saved_ = false;
   if (warm == 0) return;
   read_moves(particles);
   find_active(Active::push, team);
@@ -128,10 +128,10 @@ void Contacts::begin_substep(const ContactPoints& points, ContactParticles& part
   write_moves(particles);
 }
 
-/// The load of a thread may be a hundred times as heavy as the link that bears it. A contact gives
-/// way by its slack times its load, in each substep anew, so such a link would sink in: slack of
-/// threads counts only the push beyond the one that acts again.
-void Contacts::bear_threads() {
+/// The load of a thread may be a hundred times as heavy as the link that carries it. A contact
+/// gives way by its slack times its load, anew in each substep, so such a link would sink in. Slack
+/// of threads counts only the push beyond the warm start.
+void Contacts::offset_slack_of_threads() {
   for (const std::uint32_t i : of_threads_) {
     simd::ContactBlock& block = blocks_[i / kLanes];
     const std::size_t lane = i % kLanes;
@@ -202,7 +202,7 @@ void Contacts::visit_active(Team& team) {
 /// Rounds leave alone what no active block moves and no body holds. Its place is rounded once, as
 /// lanes round those of the others.
 void Contacts::begin_rounds(ContactParticles& particles, Team& team) {
-  if (particles.is_mended()) set_aside();
+  if (particles.is_mended()) save_multipliers();
   read_moves(particles);
   find_active(Active::touch, team);
   for (const std::uint32_t slot : points_)
@@ -240,18 +240,18 @@ void Contacts::round(ContactParticles& particles, Team& team) {
   }
 }
 
-void Contacts::set_aside() {
-  if (std::exchange(is_aside_, true)) return;
-  aside_.resize(keys_.size());
+void Contacts::save_multipliers() {
+  if (std::exchange(are_saved_, true)) return;
+  saved_.resize(keys_.size());
   for (std::size_t i = 0; i < keys_.size(); ++i) {
-    aside_[i] = multiplier(i);
+    saved_[i] = multiplier(i);
   }
 }
 
-void Contacts::take_back() {
-  if (!std::exchange(is_aside_, false)) return;
+void Contacts::restore_multipliers() {
+  if (!std::exchange(are_saved_, false)) return;
   std::ranges::fill(active_, kMayAllBeActive);
-  for (std::size_t i = 0; i < keys_.size(); ++i) set_multiplier(i, aside_[i]);
+  for (std::size_t i = 0; i < keys_.size(); ++i) set_multiplier(i, saved_[i]);
 }
 
 void Contacts::link_active() {
@@ -270,9 +270,9 @@ void Contacts::link_active() {
   are_linked_ = true;
 }
 
-bool Contacts::hold(ContactParticles& particles, std::uint32_t slot) {
+bool Contacts::solve_at(ContactParticles& particles, std::uint32_t slot) {
   if (active_blocks_.empty() || known_as_[slot] != Known::of_contact) return false;
-  if (particles.is_mended()) set_aside();
+  if (particles.is_mended()) save_multipliers();
   if (!are_linked_) link_active();
   bool is_pushed = false;
   for (std::uint32_t i = first_link_[slot]; i != kNoIndex; i = links_[i].next)
@@ -325,14 +325,14 @@ bool Contacts::visit(ContactParticles& particles, std::size_t i) {
 /// order. (BDF2 damps what multipliers that act again make of a stack 20 times less.)
 void Contacts::end_substep(ContactParticles& particles, Team& team) {
   if (!std::exchange(is_begun_, false)) return;
-  take_back();
+  restore_multipliers();
   for (const std::uint32_t slot : points_) set_move(slot, {});
   find_active(Active::push, team);
   start_active();
   const double rate = 1 / std::sqrt(give_);
   for (const std::uint32_t slot : points_) {
     const Vector by = rate * move(slot);
-    if (!(by == Vector{})) particles.jolt(slot, by);
+    if (!(by == Vector{})) particles.jump_velocity(slot, by);
   }
 }
 
@@ -349,7 +349,7 @@ std::size_t Contacts::bytes() const {
          bytes_of(from_) + bytes_of(places_) + bytes_of(moves_) + bytes_of(moved_by_) +
          bytes_of(is_beside_body_) + bytes_of(first_link_) + bytes_of(active_) +
          bytes_of(active_blocks_) + bytes_of(active_colours_) + bytes_of(links_) + memory_.bytes() +
-         known_.bytes() + bytes_of(aside_) + bytes_of(known_at_) + bytes_of(bins_) +
+         known_.bytes() + bytes_of(saved_) + bytes_of(known_at_) + bytes_of(bins_) +
          bytes_of(order_) + bytes_of(taken_) + bytes_of(waiting_) + bytes_of(by_colour_) +
          bytes_of(colour_of_);
 }

@@ -1,11 +1,11 @@
 /// Contacts of the cloth with itself: constraints with multipliers, in lanes (the law stands in
 /// kernels/reference/contacts.h).
 ///
-/// Pairs that may touch in an interval stand in blocks by colours. No point is twice in a colour,
-/// so that threads may do its blocks, in any order. They stay there until the frame ends, or
-/// candidates move up: the next interval adds pairs that are near now. When a substep begins
-/// normals are frozen, and multipliers of the last substep act again. After the cloth was swept,
-/// rounds visit pairs that touch.
+/// Pairs that may touch in an interval are in blocks by colours. No point is twice in a colour, so
+/// threads may do its blocks in any order. Pairs stay there until the frame ends or candidates are
+/// renewed; the next interval adds pairs that are near by then. When a substep begins normals are
+/// frozen, and multipliers of the last substep act again (warm start). After each sweep, rounds
+/// visit pairs that touch.
 #pragma once
 
 #include <array>
@@ -62,19 +62,19 @@ class Contacts {
   /// Finds those of an interval. Found are contacts in any order that depends on the state alone.
   void find(const ContactPoints& points, const NearContacts& near);
   bool empty() const { return blocks_.empty(); }
-  /// Where a substep of h is predicted. stands: positions are put right, and what is near comes out
-  /// at once.
+  /// Where a substep of h is predicted. stands: positions are projected, and pairs that are near
+  /// come out at once.
   void begin_substep(const ContactPoints& points, ContactParticles& particles, double h,
                      bool stands, Team& team);
-  /// After a sweep: rounds, each of which visits what touches. Between them bodies may move
-  /// particles, too.
+  /// After a sweep come rounds, each of which visits all touching pairs. Between them bodies may
+  /// move particles, too.
   void begin_rounds(ContactParticles& particles, Team& team);
   void round(ContactParticles& particles, Team& team);
   /// moved(slot, by): by how much (m) contacts have moved it.
   template <class Moved>
   void end_rounds(Moved&& moved) const;
-  /// Over what touches at the slot. Returns whether something was moved.
-  bool hold(ContactParticles& particles, std::uint32_t slot);
+  /// Solves the contacts at the slot. Returns whether something was moved.
+  bool solve_at(ContactParticles& particles, std::uint32_t slot);
   /// The past of points that contacts have pushed is changed as their velocities were.
   void end_substep(ContactParticles& particles, Team& team);
   /// Writes the multipliers that the next frame begins with.
@@ -98,7 +98,7 @@ class Contacts {
   void clear();
   Multiplier multiplier(std::size_t contact) const;
   void set_multiplier(std::size_t contact, const Multiplier& to);
-  void take_back();
+  void restore_multipliers();
   void gather_known();
   void retire(std::size_t contact);
   void find_known(std::span<const NearContact> near);
@@ -118,11 +118,11 @@ class Contacts {
   enum class Active : std::uint8_t { push, touch };
   void find_active(Active which, Team& team);
   void place(const ContactPoints& points, kernels::Vector x, std::uint32_t slot);
-  void bear_threads();
+  void offset_slack_of_threads();
   void read_moves(const ContactParticles& particles);
   void write_moves(ContactParticles& particles);
   void visit_active(Team& team);
-  void set_aside();
+  void save_multipliers();
   void start_active();
   simd::ContactSolve solving() { return {blocks_.data(), moves_.data()}; }
   kernels::Vector move(std::size_t slot) const {
@@ -160,8 +160,8 @@ class Contacts {
   bool are_linked_ = false;        // of the active blocks
   ContactMemory memory_;           // while nothing was found in this frame
   KnownMultipliers known_;         // scratch
-  bool is_aside_ = false;          // positions are mended: these multipliers are no forces
-  std::vector<Multiplier> aside_;  // per block and lane
+  bool are_saved_ = false;         // positions are mended: these multipliers are no forces
+  std::vector<Multiplier> saved_;  // per block and lane
   std::vector<const Multiplier*> known_at_;         // scratch: per near contact; null: none
   std::vector<std::uint8_t> bins_;                  // likewise
   std::vector<std::uint32_t> order_;                // scratch: of near contacts

@@ -2,12 +2,12 @@
 /// they cut off: global intersection analysis (Baraff, Witkin and Kass 2003, "Untangling cloth").
 ///
 /// A contour leads from one edge that pierces a triangle to the next one. It vanishes in two ways:
-/// it leaves the cloth over a border, or it becomes a point in the two places of the cloth that
-/// meet in it. So it cuts off a part that is on the wrong side if that part has a border, or if
-/// there is a part without one wherever the contour runs. The wrong one is such a part with the
-/// fewest held particles, and the lightest of several. A contour that ends within the cloth cuts
-/// off nothing. Where more than two triangles have an edge, as where a pocket is sewn on, each of
-/// the sheets that meet has a border.
+/// it leaves the cloth over a border, or it shrinks to a point in both of the sheets that meet in
+/// it. So it cuts off a part that is on the wrong side if that part has a border, or if each sheet
+/// along the contour has a part without one. The wrong one of such parts has the fewest held
+/// particles, and is the lightest of several. A contour that ends within the cloth cuts off
+/// nothing. At an edge of more than two triangles, as where a pocket is sewn on, each of the sheets
+/// has a border.
 #pragma once
 
 #include <array>

@@ -1,7 +1,6 @@
 /// Layers of a cloth that begin exactly in one plane: sheets over each other at one height, and
-/// cloth that was folded flat. They are on no side of each other. So their particles are moved
-/// apart by a micrometre before anything else looks at them, in an order that depends on numbers
-/// and on normals alone.
+/// cloth that was folded flat. They are on no side of each other. So their particles are first
+/// moved apart by a micrometre, in an order that depends on numbers and on normals alone.
 ///
 /// A piece is a connected part of the cloth; a layer of it ends where it is folded back by more
 /// than a right angle. Each piece moves to its front, which is that of its first triangle and goes

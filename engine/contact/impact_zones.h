@@ -1,7 +1,8 @@
 /// Rigid impact zones (Bridson, Fedkiw and Anderson, 2002): particles that went through each other
-/// in an interval, whatever blows did. The particles of a zone take its way as one rigid body, so
-/// that none of them meets another. A free zone keeps the momentum and the angular momentum of its
-/// particles. A zone with points of a body goes with that, and one with a fixed particle with this.
+/// in an interval, in spite of impacts. The particles of a zone move as one rigid body, so that
+/// none of them meets another. A free zone keeps the momentum and the angular momentum of its
+/// particles. A zone with points of a body moves with the body, and one with a fixed particle moves
+/// with that particle.
 #pragma once
 
 #include <array>

@@ -62,7 +62,7 @@ void SurfaceContacts::predict(ContactParticles& particles, const BodyClock& cloc
   }
 }
 
-/// Where positions are put right, by any way, until a particle comes to a place that was not
+/// While positions are projected, by any way, until a particle comes to a place that was not
 /// expected.
 bool SurfaceContacts::still_holds(const ContactParticles& particles, const BodyClock& clock) const {
   return clock.stands() && interval_ > 0 && points_.hold(particles);
@@ -89,21 +89,21 @@ void SurfaceContacts::begin_interval(ContactParticles& particles, const BodyCloc
   contacts_.find(points_, layers_);
   tangles_.come_out(points_, near_);
   response_.begin(scene(particles, clock), near_);
-  squeeze_.begin(scene(particles, clock), near_);
+  narrow_gaps_.begin(scene(particles, clock), near_);
   for (const PairList& list : candidates_)
     visits_ += tuning::kVisitsOfLook * static_cast<double>(list.size());
   for (const NearPairs& near : near_)
     visits_ += tuning::kVisitsOfTouch * static_cast<double>(near.list.size());
-  interval_ = substeps * clock.h();
+  interval_ = substeps * clock.dt_substep();
 }
 
 void SurfaceContacts::advance(ContactParticles& particles, const BodyClock& clock, Team& team) {
   if (empty()) return;
   const ContactScene scene = this->scene(particles, clock);
   response_.advance(scene, near_);
-  squeeze_.share(scene, near_);
+  narrow_gaps_.share(scene, near_);
   untangling_.pull(scene);
-  contacts_.begin_substep(points_, particles, clock.h(), clock.stands(), team);
+  contacts_.begin_substep(points_, particles, clock.dt_substep(), clock.stands(), team);
 }
 
 bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock& clock,
@@ -114,7 +114,7 @@ bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock&
   const ContactScene scene = this->scene(particles, clock);
   points_.measure_moves(particles);
   late_depth_ = 0;
-  squeeze_.take_in(scene, near_, tangles_);
+  narrow_gaps_.take_in(scene, near_, tangles_);
   bool has_moved = push_late_apart(scene, team);
   verification_.find(scene, search_, near_search_, candidates_, team);
   const bool has_failed = !verification_.failures().empty();
@@ -131,7 +131,7 @@ bool SurfaceContacts::end_interval(ContactParticles& particles, const BodyClock&
   return true;
 }
 
-/// Cloth that is put right goes nowhere through itself. Crossings of bodies are stopped when it
+/// Cloth that is projected does not go through itself. Crossings of bodies are stopped when it
 /// moves: they tell on which side it belongs.
 bool SurfaceContacts::verify_standing(ContactParticles& particles, const BodyClock& clock,
                                       Team& team) {
@@ -165,7 +165,7 @@ bool SurfaceContacts::push_late_apart(const ContactScene& scene, Team& team) {
     if (verification_.failures().empty()) return round > 0;
     expect_failures(scene);
     for (const Failure& late : verification_.failures())
-      rescue::blow(scene, candidates_[late.list], late, interval_);
+      rescue::apply_impact(scene, candidates_[late.list], late, interval_);
   }
   return true;
 }
@@ -243,7 +243,7 @@ void SurfaceContacts::read_touching(const ContactParticles& particles, const Bod
 
 std::size_t SurfaceContacts::bytes() const {
   std::size_t bytes = points_.bytes() + present_.bytes() + search_.bytes() + near_search_.bytes() +
-                      response_.bytes() + squeeze_.bytes() + tangles_.bytes() +
+                      response_.bytes() + narrow_gaps_.bytes() + tangles_.bytes() +
                       untangling_.bytes() + bytes_of(impulses_.of_body) + zones_.bytes();
   for (const PairList& list : candidates_) bytes += list.bytes();
   for (const NearPairs& near : near_)

@@ -1,29 +1,28 @@
 /// Contacts of surfaces of triangles: of a cloth with bodies that are meshes, and with itself where
-/// it has self-contact. An interval of some substeps (tuning::kContactInterval), which the clock of
-/// the bodies counts whether there are bodies or not, has these stages:
+/// it has self-contact. The clock of the bodies counts intervals of some substeps
+/// (tuning::kContactInterval), with or without bodies. An interval has these stages:
 ///
-///   1  points: where all points are, and the boxes that they are expected to stay in
-///   2  candidates: which pairs of features may meet at all
-///   3  near: which of them may touch; tangles: particles that come out
+///   1  points: the places of all points, and the boxes in which they are expected to stay
+///   2  candidates: pairs of features that may meet at all
+///   3  near: candidates that may touch; tangles: particles that come out
 ///      in each substep:
-///   4  points: where the vertices of bodies are that near pairs have
-///      squeeze: how bodies share the room between them
+///   4  points: the places of the bodies' vertices in near pairs
+///      narrow_gaps: how bodies share a gap smaller than their thicknesses
 ///      contacts: normals of the cloth beside itself are frozen, and multipliers act again
-///   5  respond: lanes find which near pairs of bodies touch
-///   6  respond: these are pushed apart, along normals of that moment, with friction
+///   5  respond: lanes find near pairs with bodies that touch
+///   6  respond: these are pushed apart, along their present normals, with friction
 ///      contacts: rounds of visits to pairs of the cloth with itself
 ///      when the interval is over:
-///   7  verify: which pairs came near unexpectedly
-///      and which went through each other
+///   7  verify: pairs that came near unexpectedly, and pairs that went through each other
 ///   8  rescue: these are stopped
 ///   9  tangles: pairs that could not be stopped, or crossed from the beginning
 ///
-/// While positions are put right an interval lasts until a particle leaves its box, and has the
+/// While positions are projected an interval lasts until a particle leaves its box, and has the
 /// stages 7 to 9 for the cloth with itself.
 ///
-/// Particles that are inside of a one-sided body when it appears, or when positions are written,
-/// are known as such until they are out. Triangles that cross a body are known until they do no
-/// longer, and so are pairs of triangles of the cloth that cross each other.
+/// Particles inside a one-sided body when it appears, or when positions are written, are remembered
+/// until they are out. So are triangles that cross a body, and pairs of triangles of the cloth that
+/// cross each other.
 #pragma once
 
 #include <cstdint>
@@ -31,9 +30,9 @@
 #include <vector>
 
 #include "engine/contact/contacts.h"
+#include "engine/contact/narrow_gaps.h"
 #include "engine/contact/rescue.h"
 #include "engine/contact/respond.h"
-#include "engine/contact/squeeze.h"
 #include "engine/contact/touch.h"
 #include "engine/contact/untangling.h"
 
@@ -41,15 +40,15 @@ namespace weft {
 
 /// known: tangles are as the frame before left them. anew: positions were given, or a body was, and
 /// they are looked for. goes_on: where the last frame ended, and bodies still stand as they did in
-/// it: tangles with bodies are looked for, since positions that are put right are not verified
+/// it: tangles with bodies are looked for, since projected positions are not verified
 /// beside these.
 enum class ContactStart : std::uint8_t { known, anew, goes_on };
 
 class SurfaceContacts {
  public:
-  SurfaceContacts(const Model& model, const simd::Table& table, Room& room)
+  SurfaceContacts(const Model& model, const simd::Table& table, ThicknessShares& shares)
       : model_(model),
-        room_(room),
+        shares_(shares),
         points_(model),
         present_(points_),
         search_(table),
@@ -103,9 +102,9 @@ class SurfaceContacts {
                   surface.velocity);
   }
   /// Over what the slot has touched in this substep. Returns whether it was pushed.
-  bool hold(ContactParticles& particles, const BodyClock& clock, std::uint32_t slot) {
-    const bool is_pushed = contacts_.hold(particles, slot);
-    return response_.hold(scene(particles, clock), near_, slot) || is_pushed;
+  bool solve_at(ContactParticles& particles, const BodyClock& clock, std::uint32_t slot) {
+    const bool is_pushed = contacts_.solve_at(particles, slot);
+    return response_.solve_at(scene(particles, clock), near_, slot) || is_pushed;
   }
   /// After a substep, which may be the last of an interval, and again if particles were moved
   /// since. Returns whether particles had to be moved.
@@ -143,7 +142,7 @@ class SurfaceContacts {
 
  private:
   ContactScene scene(ContactParticles& particles, const BodyClock& clock) {
-    return {model_, clock, points_, present_, particles, impulses_, tangles_, room_};
+    return {model_, clock, points_, present_, particles, impulses_, tangles_, shares_};
   }
   void begin_interval(ContactParticles& particles, const BodyClock& clock, int substeps,
                       Team& team);
@@ -155,14 +154,14 @@ class SurfaceContacts {
   void expect_failures(const ContactScene& scene);
 
   const Model& model_;
-  Room& room_;
+  ThicknessShares& shares_;
   ContactPoints points_;
   PresentPoints present_;
   CandidateSearch search_;
   NearSearch near_search_;
   Response response_;
   Contacts contacts_;
-  Squeeze squeeze_;
+  NarrowGaps narrow_gaps_;
   Verification verification_;
   Candidates candidates_;
   Near near_;

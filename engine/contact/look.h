@@ -1,5 +1,5 @@
-/// Pairs of features in double: where they are nearest to each other, on which side of a one-sided
-/// surface the other one is, and whether neighbours are nearer.
+/// Pairs of features in double: their nearest points, the side of a one-sided surface on which the
+/// other feature is, and whether neighbours are nearer.
 #pragma once
 
 #include <algorithm>

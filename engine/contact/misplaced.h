@@ -1,5 +1,5 @@
-/// Particles inside a mesh body, and triangles that cross one: a part of the state of a cloth,
-/// since places alone do not tell it.
+/// Particles inside a mesh body, and triangles that cross one. They are a part of the state of a
+/// cloth, since they do not follow from positions.
 #pragma once
 
 #include <algorithm>

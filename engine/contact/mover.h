@@ -1,4 +1,4 @@
-/// Moves particles in the end of an interval, and loads the body that has stopped them.
+/// Moves particles at the end of an interval, and loads the body that has stopped them.
 #pragma once
 
 #include "engine/contact/scene.h"
@@ -10,8 +10,8 @@ class Mover {
   /// body: kNoIndex where cloth stops cloth.
   Mover(const ContactScene& scene, std::uint32_t body) : scene_(scene), body_(body) {}
 
-  /// Bodies of a closed form hold particles that cloth has moved: the other feature takes the rest.
-  /// of_surface: m/s, of the body there.
+  /// Bodies of a closed form stop particles that cloth has moved: the other feature moves by the
+  /// rest. of_surface: m/s, of the body there.
   void move(std::uint32_t slot, kernels::Vector by, kernels::Vector faster,
             kernels::Vector of_surface) const {
     const kernels::Vector before = scene_.particles.read(slot).v;
@@ -19,14 +19,14 @@ class Mover {
     if (body_ != kNoIndex) return load(slot, faster, of_surface);
     scene_.particles.push(slot, {}, {});
     scene_.points.set_end(slot, scene_.particles.position(slot));
-    scene_.particles.jolt(slot, scene_.particles.read(slot).v - before);
+    scene_.particles.jump_velocity(slot, scene_.particles.read(slot).v - before);
   }
-  /// Nothing but the body holds it: the others of a rigid zone are moved likewise.
+  /// Only the body stops it: all particles of a rigid zone move together.
   void move_in_zone(std::uint32_t slot, kernels::Vector by, kernels::Vector faster,
                     kernels::Vector of_surface) const {
     put(slot, by, faster);
     if (body_ != kNoIndex) return load(slot, faster, of_surface);
-    scene_.particles.jolt(slot, faster);
+    scene_.particles.jump_velocity(slot, faster);
   }
 
  private:

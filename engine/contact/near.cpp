@@ -262,7 +262,7 @@ void NearSearch::find(ContactPoints& points, const Candidates& candidates, const
   }
 }
 
-/// Room for the names of pairs. Those of contacts that are no candidates any more go.
+/// Space for the names of pairs. Those of contacts that are no candidates any more go.
 void NearSearch::give_names(const Candidates& candidates, NearContacts& layers) {
   layers.clear();
   if (layers.anew) names_ = 0;

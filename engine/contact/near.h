@@ -1,6 +1,6 @@
-/// Stage 3 of an interval: which candidates may touch within it. Their distance is measured in
-/// lanes; near are those that come nearer than the thickness if points go on as expected, but for
-/// the reach. Pairs that are too far apart to become near sleep until the points of both surfaces
+/// Stage 3 of an interval finds the candidates that may touch within it. Lanes measure their
+/// distances. A pair is near if its points, moving as expected, may come nearer than the thickness
+/// plus the reach. Pairs that are too far apart for this sleep until the points of both surfaces
 /// may have come that far.
 #pragma once
 

@@ -1,4 +1,4 @@
-/// Pairs that may touch within an interval, and what is known of each.
+/// Pairs that may touch within an interval, and the state of each.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace weft {
 
-/// A near pair, and what its touch has done in the present substep.
+/// A near pair, and the effect of its contact in the present substep.
 struct NearState {
   double thickness = 0;      // m
   bool is_touching = false;  // in this substep

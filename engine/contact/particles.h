@@ -36,11 +36,11 @@ class ContactParticles {
   virtual void touch(std::uint32_t slot, const TouchedSurface& surface) = 0;
   /// Whether it has touched one in this substep.
   virtual bool is_on_body(std::uint32_t slot) const = 0;
-  /// It was put elsewhere when the substep was over: from there it goes on at first order.
+  /// It was moved after the end of the substep: from there it goes on at first order.
   virtual void stop(std::uint32_t slot, const TouchedSurface& surface) = 0;
-  /// Its velocity was changed by `by` in a moment: its past is changed alike, and what two
-  /// particles do to each other keeps their momentum.
-  virtual void jolt(std::uint32_t slot, kernels::Vector by) = 0;
+  /// Its velocity has jumped by `by`: its past changes alike, so that two particles that act on
+  /// each other keep their momentum.
+  virtual void jump_velocity(std::uint32_t slot, kernels::Vector by) = 0;
   /// A push by other particles of the cloth: `by` is a motion, `comes_out` is none. A particle that
   /// begins under a body of a closed form is pushed no deeper into it, and no other ends in one.
   virtual void push(std::uint32_t slot, kernels::Vector by, kernels::Vector comes_out) = 0;
@@ -48,7 +48,7 @@ class ContactParticles {
   virtual bool is_beside_body(std::uint32_t slot) const = 0;
   /// Contacts have moved it to x: bodies of a closed form hold it, or it follows them.
   virtual void move_beside_bodies(std::uint32_t slot, kernels::Vector x) = 0;
-  /// By what acts in the substep.
+  /// Moves it to x, as a force of the substep would.
   virtual void move_to(std::uint32_t slot, kernels::Vector x) = 0;
   /// Moves of a particle from now on, until the substep ends, make it no faster.
   virtual bool is_mended() const = 0;

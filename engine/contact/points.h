@@ -1,5 +1,5 @@
-/// Where the points of surfaces are in an interval of some substeps, and where they are expected to
-/// come to.
+/// The places of the points of surfaces in an interval of some substeps, and the boxes in which
+/// they are expected to stay.
 #pragma once
 
 #include <algorithm>
@@ -22,8 +22,8 @@ class ContactPoints : public ContactSurfaces {
 
   /// Begins a frame.
   void begin(const BodyClock& clock);
-  /// Finds the speeds of a step, whose first substep is predicted. While bodies stand nobody
-  /// asks.
+  /// Finds the speeds of a step, whose first substep is predicted. It is not needed
+  /// while bodies stand.
   void look_ahead(const ContactParticles& cloth, const BodyClock& clock);
   const ContactSpeeds& speeds() const { return speeds_; }
   /// Begins an interval, whose first substep is predicted. It places the active vertices of bodies:

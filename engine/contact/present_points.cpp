@@ -16,7 +16,7 @@ void PresentPoints::begin_interval(std::span<const std::uint32_t> asked) {
 }
 
 void PresentPoints::place_vertices(const BodyClock& clock) {
-  const double rate = 1 / clock.h();
+  const double rate = 1 / clock.dt_substep();
   const bool are_placed = std::exchange(are_placed_, true);
   for (const std::uint32_t point : asked_) {
     if (points_.is_of_cloth(point)) continue;

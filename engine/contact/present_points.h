@@ -1,4 +1,4 @@
-/// Where the points of near pairs are in the present substep.
+/// The places of the points of near pairs in the present substep.
 #pragma once
 
 #include <array>

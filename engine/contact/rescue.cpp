@@ -21,7 +21,8 @@ Vector velocity_in(const ContactScene& scene, std::uint32_t slot, double time) {
 
 }  // namespace
 
-void blow(const ContactScene& scene, const PairList& pairs, const Failure& failure, double time) {
+void apply_impact(const ContactScene& scene, const PairList& pairs, const Failure& failure,
+                  double time) {
   ContactPoints& points = scene.points;
   const Pair& pair = pairs.pairs[failure.pair];
   const auto four = pairs.points(failure.pair);
@@ -71,21 +72,21 @@ namespace weft {
 void stop_failures(const ContactScene& scene, CandidateSearch& search, NearSearch& near_search,
                    Verification& verification, Candidates& candidates, double time,
                    ImpactZones& zones, RescueReport& report, Team& team) {
-  using tuning::kBlowRounds, tuning::kZoneRounds, tuning::kClothZoneRounds;
+  using tuning::kImpactRounds, tuning::kZoneRounds, tuning::kClothZoneRounds;
   const int zone_rounds = scene.points.touches_itself() ? kClothZoneRounds : kZoneRounds;
   report.failures += static_cast<int>(verification.failures().size());
   zones.begin();
-  for (int round = 0; round < kBlowRounds + zone_rounds; ++round) {
+  for (int round = 0; round < kImpactRounds + zone_rounds; ++round) {
     const std::vector<Failure>& failures = verification.failures();
     if (failures.empty()) break;
-    if (round == kBlowRounds) report.zones += static_cast<int>(failures.size());
-    if (round < kBlowRounds) {
+    if (round == kImpactRounds) report.zones += static_cast<int>(failures.size());
+    if (round < kImpactRounds) {
       for (const Failure& failure : failures)
-        rescue::blow(scene, candidates[failure.list], failure, time);
+        rescue::apply_impact(scene, candidates[failure.list], failure, time);
     } else {
       for (const Failure& failure : failures)
         zones.join(candidates[failure.list].points(failure.pair));
-      if (round >= kBlowRounds + kZoneRounds) zones.grow(scene);
+      if (round >= kImpactRounds + kZoneRounds) zones.grow(scene);
       zones.move(scene, time);
     }
     verification.find(scene, search, near_search, candidates, team);

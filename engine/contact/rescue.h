@@ -1,7 +1,7 @@
-/// Stage 8 of an interval: what to do about pairs that went through each other. First they
-/// are stopped where they would have met, as by inelastic blows; that may send others through each
-/// other, so it is done in rounds. Then what still fails moves in rigid zones, which grow by what
-/// they meet (impact_zones.h).
+/// Stage 8 of an interval stops pairs that went through each other. First inelastic impacts stop
+/// them where they would have met. These may send other pairs through each other, so there are
+/// rounds. Then pairs that still fail move in rigid zones, which grow by the particles that they
+/// meet (impact_zones.h).
 #pragma once
 
 #include "engine/contact/impact_zones.h"
@@ -18,7 +18,8 @@ void stop_failures(const ContactScene& scene, CandidateSearch& search, NearSearc
 namespace rescue {
 
 /// time: s, of the interval.
-void blow(const ContactScene& scene, const PairList& pairs, const Failure& failure, double time);
+void apply_impact(const ContactScene& scene, const PairList& pairs, const Failure& failure,
+                  double time);
 
 }  // namespace rescue
 

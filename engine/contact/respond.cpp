@@ -122,7 +122,7 @@ void Response::find_touching(const ContactScene& scene, Near& near, Team& team) 
 namespace {
 
 /// 1/kg: the sum of W w^2, or the least that counts; 0 where nothing moves.
-double weight_of(const ContactScene& scene, const Encounter& e) {
+double weight_of(const ContactScene& scene, const PairContact& e) {
   double weight = 0;
   for (std::size_t k = 0; k < 4; ++k) {
     const double w = e.nearest.weight[k];
@@ -133,16 +133,16 @@ double weight_of(const ContactScene& scene, const Encounter& e) {
 
 /// The motion of a body's surface beside that of its feature, which is in the middle of what is
 /// round: by its turn in the substep (m), and its spin (m/s).
-Vector turn_of_arm(const ContactScene& scene, const Encounter& e, const Pair& pair) {
+Vector turn_of_arm(const ContactScene& scene, const PairContact& e, const Pair& pair) {
   const reference::BodyMotion& body = scene.clock.motions()[scene.points.later(pair).body];
   return e.arm - body.from.turned(body.to.turned_back(e.arm));
 }
-Vector speed_of_arm(const ContactScene& scene, const Encounter& e, const Pair& pair) {
+Vector speed_of_arm(const ContactScene& scene, const PairContact& e, const Pair& pair) {
   return cross(scene.clock.motions()[scene.points.later(pair).body].spin, e.arm);
 }
 
 /// The velocity of the first feature beside the second.
-Vector relative_velocity(const ContactScene& scene, const Encounter& e, const Pair& pair) {
+Vector relative_velocity(const ContactScene& scene, const PairContact& e, const Pair& pair) {
   Vector relative = -pair.outward() * speed_of_arm(scene, e, pair);
   for (std::size_t k = 0; k < 4; ++k)
     relative = relative + e.nearest.weight[k] * scene.present[e.points[k]].v;
@@ -150,16 +150,16 @@ Vector relative_velocity(const ContactScene& scene, const Encounter& e, const Pa
 }
 
 /// As it was last read.
-void read_start(const PresentPoints& present, Encounter& e) {
+void read_start(const PresentPoints& present, PairContact& e) {
   for (std::size_t k = 0; k < 4; ++k) e.start[k] = present[e.points[k]].start;
 }
 
 }  // namespace
 
 /// Where neighbours are nearer, or the features are not beside each other, it does not push.
-Encounter Response::meet(const ContactScene& scene, const NearPairs& near, std::size_t i) {
+PairContact Response::contact_of(const ContactScene& scene, const NearPairs& near, std::size_t i) {
   const Pair& pair = near.list.pairs[i];
-  Encounter e;
+  PairContact e;
   e.points = near.list.points(i);
   for (std::size_t k = 0; k < 4; ++k) e.x[k] = scene.present[e.points[k]].x;
   e.nearest = nearest(pair.kind, e.x);
@@ -176,18 +176,18 @@ Encounter Response::meet(const ContactScene& scene, const NearPairs& near, std::
   e.normal = e.is_under ? -1.0 * direct : direct;
   e.gap = (e.is_under ? -l : l) - thickness;
   e.arm = (pair.outward() * radius) * e.normal;
-  e.yield = scene.yield(e.points, e.nearest.weight, later.body);
-  if (!(e.gap + e.yield.by < 0) || !is_in_place(pair.kind, e.nearest)) return e;
+  e.thinning = scene.thinning(e.points, e.nearest.weight, later.body);
+  if (!(e.gap + e.thinning.by < 0) || !is_in_place(pair.kind, e.nearest)) return e;
   const Vector seen = pair.kind == PairKind::edges ? e.normal : direct;
   e.pushes = !is_ghost(scene.points.surfaces(), pair, e.x, e.nearest, seen, tuning::kTouchLean,
                        [&](std::uint32_t point) { return scene.now(point); });
   return e;
 }
 
-bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i) {
+bool Response::solve(const ContactScene& scene, NearPairs& near, std::size_t i) {
   const Pair& pair = near.list.pairs[i];
   NearState& state = near.states[i];
-  Encounter e = meet(scene, near, i);
+  PairContact e = contact_of(scene, near, i);
   near.set_under(i, e.is_under);
   near.set_normal(i, e.normal);
   if (!e.pushes) return false;
@@ -195,22 +195,22 @@ bool Response::resist(const ContactScene& scene, NearPairs& near, std::size_t i)
   if (!(weight_of(scene, e) > 0)) return false;
   Vector slip = -pair.outward() * turn_of_arm(scene, e, pair);
   for (std::size_t k = 0; k < 4; ++k) slip = slip + e.nearest.weight[k] * (e.x[k] - e.start[k]);
-  state.grip.yield = e.yield;
+  state.grip.thinning = e.thinning;
   const ContactSurface& later = scene.points.later(pair);
-  const reference::Stop stop =
-      reference::stop({e.normal, e.gap, slip}, later.friction, scene.clock.h(), state.grip);
+  const reference::Stop stop = reference::stop({e.normal, e.gap, slip}, later.friction,
+                                               scene.clock.dt_substep(), state.grip);
   if (!(stop.push > 0)) return false;
   state.is_touching = true;
   state.push += stop.push;
-  push(scene, e, pair, stop,
-       reference::slow(e.normal, relative_velocity(scene, e, pair), later.friction, scene.clock.h(),
-                       state.grip));
+  apply(scene, e, pair, stop,
+        reference::slow(e.normal, relative_velocity(scene, e, pair), later.friction,
+                        scene.clock.dt_substep(), state.grip));
   return true;
 }
 
-/// Pairs that have touched in this substep, and are farther apart than their pushes were to bring
-/// them, come back: what else moved their points would lift them off a surface that bears them.
-void Response::give_back(const ContactScene& scene, Near& near) const {
+/// Pairs that have touched in this substep, and are now farther apart than their pushes intended,
+/// come back. Otherwise other corrections would lift their points off a surface that supports them.
+void Response::take_back_excess(const ContactScene& scene, Near& near) const {
   for (std::size_t k = 0; k < links_.size(); ++k) {
     const auto [list, i, next] = links_[k];
     if (k > 0 && links_[k - 1].list == list && links_[k - 1].pair == i)
@@ -218,16 +218,16 @@ void Response::give_back(const ContactScene& scene, Near& near) const {
     reference::Grip& grip = near[list].states[i].grip;
     if (!(grip.pushed > 0)) continue;
     scene.present.read(near[list].list.points(i), scene.particles);
-    const Encounter e = meet(scene, near[list], i);
-    const double back = std::min(e.gap + e.yield.by, grip.pushed), weight = weight_of(scene, e);
+    const PairContact e = contact_of(scene, near[list], i);
+    const double back = std::min(e.gap + e.thinning.by, grip.pushed), weight = weight_of(scene, e);
     if (!(back > 0) || !(weight > 0)) continue;
     const double apart = dot(relative_velocity(scene, e, near[list].list.pairs[i]), e.normal),
                  slower = std::clamp(apart, 0.0, grip.stopped);
     grip.pushed -= back;
     grip.stopped -= slower;
     near[list].states[i].push -= back;
-    push(scene, e, near[list].list.pairs[i], {.push = -back, .by = -back * e.normal},
-         {.change = -slower * e.normal});
+    apply(scene, e, near[list].list.pairs[i], {.push = -back, .by = -back * e.normal},
+          {.change = -slower * e.normal});
   }
 }
 
@@ -253,8 +253,8 @@ std::pair<TouchedSurface, Vector> Response::touched_by(const ContactPoints& poin
 }
 
 /// Moves what can move, and loads the body.
-void Response::push(const ContactScene& scene, const Encounter& e, const Pair& pair,
-                    const reference::Stop& stop, const reference::Slowed& slow) {
+void Response::apply(const ContactScene& scene, const PairContact& e, const Pair& pair,
+                     const reference::Stop& stop, const reference::Slowed& slow) {
   const ContactSurface& later = scene.points.later(pair);
   const double weight = weight_of(scene, e);
   TouchedSurface surface{.body = later.body, .velocity = speed_of_arm(scene, e, pair)};
@@ -285,7 +285,7 @@ void Response::push(const ContactScene& scene, const Encounter& e, const Pair& p
   const double l_change = length(slow.change);
   if (l_change > 0) {
     scene.impulses.friction +=
-        length(impulse) / l_change * slow.taken * (stop.slid / scene.clock.h());
+        length(impulse) / l_change * slow.taken * (stop.slid / scene.clock.dt_substep());
   }
 }
 
@@ -301,13 +301,13 @@ void Response::remember(const ContactScene& scene, NearPairs& near, std::size_t 
   }
 }
 
-bool Response::hold(const ContactScene& scene, Near& near, std::uint32_t slot) {
+bool Response::solve_at(const ContactScene& scene, Near& near, std::uint32_t slot) {
   bool is_pushed = false;
   for (std::uint32_t link = slot < first_link_.size() ? first_link_[slot] : kNoIndex;
        link != kNoIndex; link = links_[link].next) {
     visits_ += tuning::kVisitsOfTouch;
     scene.present.read(near[links_[link].list].list.points(links_[link].pair), scene.particles);
-    is_pushed = resist(scene, near[links_[link].list], links_[link].pair) || is_pushed;
+    is_pushed = solve(scene, near[links_[link].list], links_[link].pair) || is_pushed;
   }
   return is_pushed;
 }
@@ -318,10 +318,10 @@ double Response::deepest(const ContactScene& scene, Near& near, Team& team) {
   for (std::size_t list = 0; list < kBodyLists; ++list) {
     for (std::size_t block = 0; block < touching_[list].size(); ++block) {
       for_each_lane(block, touching_[list][block], [&](std::size_t i) {
-        const Encounter e = meet(scene, near[list], i);
-        const double spared =
-            std::min(e.yield.by, near[list].states[i].thickness -
-                                     scene.points.later(near[list].list.pairs[i]).largest_radius());
+        const PairContact e = contact_of(scene, near[list], i);
+        const double spared = std::min(
+            e.thinning.by, near[list].states[i].thickness -
+                               scene.points.later(near[list].list.pairs[i]).largest_radius());
         if (e.pushes) deepest = std::max(deepest, -e.gap - spared);
       });
     }

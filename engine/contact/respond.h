@@ -1,13 +1,13 @@
-/// Stages 4 to 6 of an interval: in each substep, after the cloth has been swept, pairs that are
-/// nearer than the thickness are pushed apart, with friction, along normals of that very moment.
-/// Lanes find them; they are few, and are treated one after the other, so that what touches in many
-/// places is pushed no farther than it must.
+/// Stages 4 to 6 of an interval: after the sweep of each substep, pairs that are nearer than the
+/// thickness are pushed apart, with friction, along their present normals. Lanes find these pairs.
+/// They are few, and are solved one after the other, so that a feature with many contacts is pushed
+/// no farther than necessary.
 ///
-/// A touch does what it does with closed forms (kernels/reference/bodies.h): it stops what came
-/// nearer in this substep, lets what was deeper come out slowly and without speed, and gives
-/// friction what Coulomb's law allows of this substep's push. Here it acts on two features, whose
-/// points count by w_i: each is moved by W_i w_i / sum of W_j w_j^2 times that, with W_i its
-/// inverse mass. Points of bodies have none: what they do not take loads the body.
+/// The law is that of closed forms (kernels/reference/bodies.h). A contact stops the approach of
+/// this substep, lets a deeper penetration come out slowly and without speed, and has Coulomb
+/// friction for the push of this substep. Here it acts on two features, whose points have the
+/// weights w_i: each moves by W_i w_i / sum of W_j w_j^2 times the correction, with W_i its inverse
+/// mass. Points of bodies have none: their share of the impulse loads the body.
 #pragma once
 
 #include <algorithm>
@@ -17,8 +17,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/contact/encounter.h"
 #include "engine/contact/near_pairs.h"
+#include "engine/contact/pair_contact.h"
 #include "engine/contact/scene.h"
 #include "engine/parallel/team.h"
 #include "engine/tuning.h"
@@ -40,8 +40,8 @@ class Response {
   /// Over all pairs. moved(slot, by): by how much (m).
   template <class Moved>
   void sweep(const ContactScene& scene, Near& near, Team& team, Moved&& moved);
-  /// Beside contacts within the cloth: over all pairs once. A pair that has pushed too much
-  /// follows.
+  /// Beside contacts within the cloth: visits all pairs once. A pair that has pushed too much
+  /// takes the excess back.
   template <class Moved>
   void round(const ContactScene& scene, Near& near, Team& team, Moved&& moved);
   /// The surface that has pushed a particle most in this substep, of all that it touches, and its
@@ -49,8 +49,8 @@ class Response {
   std::pair<TouchedSurface, kernels::Vector> touched_by(const ContactPoints& points,
                                                         const PresentPoints& present,
                                                         const Near& near, std::uint32_t slot) const;
-  /// Over pairs of the slot that have touched in this substep. Returns whether one was pushed.
-  bool hold(const ContactScene& scene, Near& near, std::uint32_t slot);
+  /// Solves pairs of the slot that have touched in this substep. Returns whether one was pushed.
+  bool solve_at(const ContactScene& scene, Near& near, std::uint32_t slot);
   /// m, by which a pair is nearer than its thickness.
   double deepest(const ContactScene& scene, Near& near, Team& team);
   /// Since this was last asked: what sweeps took, in visits of a constraint.
@@ -60,7 +60,7 @@ class Response {
  private:
   /// A sweep goes through all pairs of one turn, then through those of the next.
   enum class Turn : std::uint8_t { points, edges, points_of_bodies };
-  static Encounter meet(const ContactScene& scene, const NearPairs& near, std::size_t i);
+  static PairContact contact_of(const ContactScene& scene, const NearPairs& near, std::size_t i);
   template <class Visit>
   static void for_each_lane(std::size_t block, std::uint32_t bits, Visit&& visit);
   simd::PairTouch touch_of(const ContactScene& scene, NearPairs& near,
@@ -70,10 +70,10 @@ class Response {
   template <class Moved>
   double push_apart(const ContactScene& scene, Near& near, Turn turn, Moved& moved);
   /// Returns whether it was pushed apart.
-  void give_back(const ContactScene& scene, Near& near) const;
-  static bool resist(const ContactScene& scene, NearPairs& near, std::size_t i);
-  static void push(const ContactScene& scene, const Encounter& e, const Pair& pair,
-                   const reference::Stop& stop, const reference::Slowed& slow);
+  void take_back_excess(const ContactScene& scene, Near& near) const;
+  static bool solve(const ContactScene& scene, NearPairs& near, std::size_t i);
+  static void apply(const ContactScene& scene, const PairContact& e, const Pair& pair,
+                    const reference::Stop& stop, const reference::Slowed& slow);
   void find_touching(const ContactScene& scene, Near& near, Team& team);
   void remember(const ContactScene& scene, NearPairs& near, std::size_t list, std::size_t i);
 
@@ -127,7 +127,7 @@ void Response::round(const ContactScene& scene, Near& near, Team& team, Moved&& 
   find_touching(scene, near, team);
   for (const Turn turn : {Turn::points, Turn::edges, Turn::points_of_bodies})
     push_apart(scene, near, turn, moved);
-  give_back(scene, near);
+  take_back_excess(scene, near);
 }
 
 template <class Moved>
@@ -145,7 +145,7 @@ double Response::push_apart(const ContactScene& scene, Near& near, Turn turn, Mo
     for_each_lane(block, bits & touching_now_[list][block], [&](std::size_t i) {
       visits_ += tuning::kVisitsOfTouch;
       const double before = pairs.states[i].push;
-      if (!resist(scene, pairs, i)) return;
+      if (!solve(scene, pairs, i)) return;
       longest = std::max(longest, pairs.states[i].push - before);
       remember(scene, pairs, list, i);
       for (const std::uint32_t point : pairs.list.points(i)) {

@@ -1,11 +1,11 @@
-/// The distances that features of a cloth keep from each other: its thickness, and of those that
-/// are nearer in the shape at rest most of what they have there. A mesh finer than the thickness
-/// would push itself apart otherwise.
+/// The distances that features of a cloth keep from each other. It is the thickness, or most of the
+/// distance at rest for features that are nearer there. A mesh finer than the thickness would push
+/// itself apart otherwise.
 ///
-/// The shape at rest is what lengths at rest tell: around each triangle its neighbours are laid
-/// into its plane, one beside the other, and so are those that seams join to them: what is sewn
-/// together, or will be, has a distance of zero there. Threads lie at any angle to each other and
-/// to the cloth that they are tied to: they are as far apart as the way along edges is long.
+/// The shape at rest follows from lengths at rest: the neighbours of each triangle are laid into
+/// its plane, one beside the other, and so are those that seams join to them. Points that are sewn
+/// together, or will be, have a distance of zero there. Threads may have any angle to each other
+/// and to the cloth that they are tied to: their distance is the length of the path along edges.
 #pragma once
 
 #include <cstdint>

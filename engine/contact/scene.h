@@ -1,12 +1,12 @@
-/// All that the stages of an interval share in a substep.
+/// The data that the stages of an interval share in a substep.
 #pragma once
 
 #include "engine/contact/impulses.h"
 #include "engine/contact/particles.h"
 #include "engine/contact/points.h"
 #include "engine/contact/present_points.h"
-#include "engine/contact/room.h"
 #include "engine/contact/tangles.h"
+#include "engine/contact/thickness_shares.h"
 
 namespace weft {
 
@@ -18,7 +18,7 @@ struct ContactScene {
   ContactParticles& particles;
   ContactImpulses& impulses;
   const Tangles& tangles;
-  Room& room;
+  ThicknessShares& shares;
 
   /// A point in the present substep; a vertex of a body is one that was asked for.
   ContactParticle read(std::uint32_t point) const {
@@ -29,7 +29,7 @@ struct ContactScene {
   ContactParticle read_moving(std::uint32_t slot) const {
     ContactParticle particle = particles.read(slot);
     if (points.inverse_mass(slot) == 0)
-      particle.v = (1 / clock.h()) * (particle.x - particle.start);
+      particle.v = (1 / clock.dt_substep()) * (particle.x - particle.start);
     return particle;
   }
   /// Where that is.
@@ -40,14 +40,14 @@ struct ContactScene {
   kernels::Vector start(std::uint32_t point) const {
     return points.is_of_cloth(point) ? particles.start(point) : present[point].start;
   }
-  /// The yield of a body to a feature of the cloth, whose points count by their weights.
-  reference::Yield yield(const std::array<std::uint32_t, 4>& four,
-                         const std::array<double, 4>& weights, std::uint32_t body) const {
-    reference::Yield sum;
-    if (!room.any()) return sum;
+  /// The thinning of a body at a feature of the cloth, whose points count by their weights.
+  reference::Thinning thinning(const std::array<std::uint32_t, 4>& four,
+                               const std::array<double, 4>& weights, std::uint32_t body) const {
+    reference::Thinning sum;
+    if (!shares.any()) return sum;
     for (std::size_t k = 0; k < 4; ++k) {
       if (!points.is_of_cloth(four[k])) continue;
-      const reference::Yield of = room.of(four[k], body);
+      const reference::Thinning of = shares.of(four[k], body);
       const double w = std::abs(weights[k]);
       sum = {sum.by + w * of.by, sum.retreat + w * of.retreat};
     }

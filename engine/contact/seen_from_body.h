@@ -1,5 +1,5 @@
-/// Boxes of the world in coordinates of a body that travels: so the tree of a body that keeps its
-/// shape stands still, and its vertices need not be placed to be looked for.
+/// Boxes of the world in the coordinates of a body that moves: there the tree of a rigid body
+/// stands still, and a search needs no vertices in coordinates of the world.
 #pragma once
 
 #include <algorithm>

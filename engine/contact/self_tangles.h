@@ -1,7 +1,7 @@
-/// Pairs of triangles of a cloth that cross each other: the cloth was made or put so, or more came
-/// together than could be kept apart. They may come apart: until then their features do not touch,
-/// and are not verified. Where triangles cross they may go on to cross their neighbours; all others
-/// are kept apart.
+/// Pairs of triangles of a cloth that cross each other: the cloth was made or placed so, or
+/// features could not be kept apart. They may come apart. Until then their features do not collide,
+/// and are not verified. Triangles that cross may go on to cross their neighbours; all others are
+/// kept apart.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@ class SelfTangles {
  public:
   explicit SelfTangles(const simd::Table& table) : table_(table) {}
 
-  /// A frame begins with what the frame before left. A pair is its first triangle and, in the lower
-  /// half, its second one, which is the later; pairs ascend.
+  /// A frame begins with the pairs that the frame before left. A pair is its first triangle and, in
+  /// the lower half, its second one, which is the later; pairs ascend.
   void begin(const TriangleSurface& cloth, const std::vector<std::uint64_t>& pairs);
   /// An interval begins: pairs that cross now are left out until it is over, for where features
   /// begin on the wrong sides no verification tells what they do. The end of an interval may be

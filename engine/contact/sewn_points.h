@@ -1,6 +1,5 @@
 /// Points of a cloth that seams join, open ones too: they are one point of the shape at rest.
-/// Features that have such a point in common belong together as features at one corner do, and
-/// touch nothing of each other.
+/// Features with such a point in common do not collide, like features at one corner.
 #pragma once
 
 #include <array>

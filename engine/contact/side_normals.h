@@ -1,5 +1,5 @@
-/// Normals of the features of a one-sided surface where an interval begins: they tell on which side
-/// of it the cloth is, by that of the feature that is nearest to it (Baerentzen and Aanaes, 2005:
+/// Normals of the features of a one-sided surface where an interval begins. The side of a point of
+/// the cloth follows from the normal of the feature nearest to it (Baerentzen and Aanaes, 2005:
 /// each triangle counts by its angle there). On the border of a surface that is open they are 0.
 /// Each is computed when it is first asked for.
 #pragma once

@@ -95,7 +95,7 @@ double fastest_in(const Box& box, const reference::BodyMotion& motion, double ti
 ContactSpeeds speeds_of_step(const Model& model, std::span<const Vector> starts,
                              std::span<const Vector> ways, std::span<const ContactSurface> bodies,
                              const BodyClock& clock) {
-  const double time = clock.time(), h = clock.h();
+  const double time = clock.time(), h = clock.dt_substep();
   const ClothInStep cloth(model, starts, ways, h, time);
   const double of_cloth = fastest_beside(model, ways, h, {});
   const auto speeds_beside = [&](Vector drift) {

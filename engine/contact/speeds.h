@@ -1,5 +1,5 @@
-/// How fast a cloth and the bodies that are meshes move beside each other in a step. A motion of
-/// all together, as of cloth and the body that walks in it, brings no two of them nearer.
+/// The speeds of a cloth and of mesh bodies relative to each other in a step. A common motion, such
+/// as that of a character who walks and its clothes, brings no two of them nearer.
 #pragma once
 
 #include <span>

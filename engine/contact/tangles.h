@@ -1,10 +1,10 @@
-/// The particles that are inside a one-sided body, and the triangles of the cloth that cross a
-/// body: it was put there, positions were written, or more came together than could be kept apart.
+/// The particles inside a one-sided body, and the triangles of the cloth that cross a body. Causes
+/// are a body that was placed there, written positions, or features that could not be kept apart.
 ///
-/// A particle that is inside is known as such until it is out, and is pushed out by the nearest
-/// way. The edges and faces of triangles that cross are no contacts until they have come apart, but
-/// for those that a corner or an edge of a one-sided body leads through: they come off it along its
-/// normal. Their particles are kept out as all others are.
+/// A particle inside a body is remembered until it is out, and is pushed out along the shortest
+/// way. Edges and faces of triangles that cross do not collide until they are apart. The exception
+/// is a triangle through which a corner or an edge of a one-sided body leads: it is pushed off
+/// along the body's normal. Particles of triangles that cross collide as all others do.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ class Tangles {
 
   /// Begins a frame with the tangles that the frame before left.
   void begin(const TriangleSurface& cloth, const Misplaced& misplaced);
-  /// An interval begins: what crosses now is left alone until it is over.
+  /// An interval begins: pairs that cross now are left alone until it is over.
   void begin_interval();
   /// Finds anew what is inside and what crosses where an interval begins: bodies, and the cloth
   /// itself.
@@ -35,7 +35,7 @@ class Tangles {
   void come_out(ContactPoints& points, Near& near);
   /// The pair could not be kept apart.
   void take_in(const ContactPoints& points, const Pair& pair);
-  /// Bodies that overlap are both to have what is between them: it is no failure of the pair.
+  /// Cloth between two bodies that overlap is inside both: it is no failure of the pair.
   void let_in(const ContactPoints& points, const Pair& pair);
   /// Finds what crosses where an interval ends: bodies, and the cloth itself.
   void find_crossing_at_end(ContactPoints& points);

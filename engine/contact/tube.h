@@ -1,6 +1,6 @@
-/// The hull of a point on its way through some time: a box when that begins and one when it ends,
-/// and the space between them on straight lines. Points that travel beside each other stay apart in
-/// their tubes, where boxes around all of their ways would meet.
+/// The hull of a point's motion in some time: a box at its start, a box at its end, and the space
+/// between them on straight lines. Tubes of points that move side by side stay apart, where boxes
+/// around their whole paths would overlap.
 #pragma once
 
 #include <cmath>

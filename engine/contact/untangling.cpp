@@ -112,10 +112,10 @@ void Untangling::begin_interval(const ContactPoints& points,
   }
 }
 
-/// One after the other: what an earlier one has drawn apart counts.
+/// One after the other: what an earlier one has pulled apart counts.
 void Untangling::pull(const ContactScene& scene) {
   if (pulls_.empty()) return;
-  const double h = scene.clock.h(), bh = h / scene.particles.momentum_share();
+  const double h = scene.clock.dt_substep(), bh = h / scene.particles.momentum_share();
   ways_.resize(scene.points.slots());
   for (Pull& pull : pulls_) {
     double weight = 0, largest = 0;

@@ -1,13 +1,14 @@
-/// Cloth that crosses itself is drawn apart (SelfContact::untangle).
+/// Cloth that crosses itself is pulled apart (SelfContact::untangle).
 ///
-/// Where a contour (contours.h) cuts off a part that is on the wrong side, edges and triangles are
-/// drawn along the normal of what they cross, so that this part comes through. Elsewhere they are
-/// drawn along the gradient of the contour's length (Volino and Magnenat-Thalmann 2006, "Resolving
-/// surface collisions through intersection contour minimization").
+/// If a contour (contours.h) cuts off a part that is on the wrong side, edges and triangles are
+/// pulled along the normal of the features that they cross, so that this part comes through.
+/// Otherwise they are pulled along the gradient of the contour's length (Volino and
+/// Magnenat-Thalmann 2006, "Resolving surface collisions through intersection contour
+/// minimization").
 ///
-/// A force brings the edge to one speed beside the triangle, as if through honey: it slows down
-/// what is faster. It is no larger than some weights of the particles, whatever the length of
-/// substeps is, and keeps momentum and angular momentum. Its work is known to the guard of energy.
+/// A viscous force brings the edge to one speed relative to the triangle: it also slows down faster
+/// ones. It is at most some weights of the particles, for any length of substeps, and keeps
+/// momentum and angular momentum. The guard of energy knows its work.
 #pragma once
 
 #include <array>

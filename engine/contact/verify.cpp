@@ -52,8 +52,8 @@ double stays_apart(double distance) {
   return distance >= tuning::kStaysApart ? tuning::kStaysApart : 0;
 }
 
-/// Whether features are in one place by what nothing moves, but for rounding: pins that lie on each
-/// other stay so, and what hangs on them turns about them.
+/// Whether the nearest points of both features are fixed, but for rounding: pins that lie on each
+/// other stay so, and cloth that hangs on them turns about them.
 bool touches_where_held(const ContactPoints& points, const std::array<std::uint32_t, 4>& four,
                         const reference::Nearest& nearest) {
   constexpr double kRounding = 1e-9;
@@ -63,8 +63,8 @@ bool touches_where_held(const ContactPoints& points, const std::array<std::uint3
   return true;
 }
 
-/// Beside triangles that cross and are drawn apart: a contour may come to the pair and go on beyond
-/// it in one interval.
+/// Beside triangles that cross and are pulled apart: a contour may come to the pair and go on
+/// beyond it in one interval.
 bool is_drawn_through(const ContactScene& scene, const Pair& pair,
                       const std::array<std::uint32_t, 4>& four) {
   return scene.model.self_contact.untangle && pair.is_within_cloth() &&
@@ -109,9 +109,9 @@ std::optional<double> meeting(PairKind kind, const PairMotion& way, Vector r, do
 
 }  // namespace
 
-/// Fails what judge(pair, points, is_alone) says of each pair of the first `lists` of candidates
-/// that may have come nearer than `near` and is not left alone. Threads judge, and once more,
-/// alone, one of them what asks.
+/// Calls judge(pair, points, is_alone) for each pair of the first `lists` of candidates that may
+/// have come nearer than `near` and is not left alone, and fails those that it says. Threads judge;
+/// one thread judges again, alone, the pairs that ask for it.
 template <class Judge>
 void Verification::judge_moved(const ContactScene& scene, const NearSearch& near_search,
                                const Candidates& candidates, std::size_t lists, double near,
@@ -186,7 +186,7 @@ void Verification::find_late(const ContactScene& scene, const NearSearch& near_s
                              const Candidates& candidates, Team& team) {
   failures_.clear();
   const ContactPoints& points = scene.points;
-  if (points.surface_pairs().empty()) return;  // layers press each other, and come apart by and by
+  if (points.surface_pairs().empty()) return;  // layers press each other, and come apart slowly
   const auto at = [&](std::uint32_t point) { return points.end(point); };
   judge_moved(
       scene, near_search, candidates, kBodyLists, points.largest_thickness(), team,
@@ -195,7 +195,8 @@ void Verification::find_late(const ContactScene& scene, const NearSearch& near_s
         const FourPoints x = points.ends_of(four);
         const reference::Nearest found = nearest(pair.kind, x);
         const double l = length(found.r);
-        const double thickness = later.thickness - scene.yield(four, found.weight, later.body).by;
+        const double thickness =
+            later.thickness - scene.thinning(four, found.weight, later.body).by;
         if (!(l < tuning::kLate * thickness) || l == 0 || !is_in_place(pair.kind, found)) return {};
         if (is_ghost(points.surfaces(), pair, x, found, (1 / l) * found.r, tuning::kTouchLean, at))
           return {};

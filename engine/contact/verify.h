@@ -1,10 +1,11 @@
-/// Stage 7 of an interval: whether features went through each other in an interval, their
-/// points moving in straight lines from where they were to where they are. A cloth that crosses no
-/// body at the start, and no pair of which fails here, crosses none at the end.
+/// Stage 7 of an interval finds features that went through each other in it. Points move in
+/// straight lines from their old to their new places. If the cloth crosses no body at the start,
+/// and no pair fails here, then it crosses none at the end.
 ///
-/// Cheapest first: points have moved less, beside each other, than their features were apart; one
-/// fixed direction separates them at both ends, and so on all of the way; and in the end steps that
-/// cannot go too far (additive continuous collision detection: Li, Kaufman and Jiang, 2021).
+/// The cheapest test comes first: points have moved less, relative to each other, than their
+/// features were apart. The second: one fixed direction separates them at both ends, and so all of
+/// the way. The last one takes steps that cannot go too far (additive continuous collision
+/// detection: Li, Kaufman and Jiang, 2021).
 #pragma once
 
 #include <vector>

@@ -75,7 +75,7 @@ Result<void> Cloth::place_fixed(std::span<const std::uint32_t> particles,
                                 std::span<const Vec3> positions) {
   if (auto r = validate_pins(*impl_->state.model, particles, positions); !r) return r;
   if (particles.empty()) return {};
-  impl_->state.pins.put_down(*impl_->state.model, particles, positions, impl_->state.position);
+  impl_->state.pins.teleport(*impl_->state.model, particles, positions, impl_->state.position);
   impl_->state.displaced = true;
   impl_->state.wake();
   return {};

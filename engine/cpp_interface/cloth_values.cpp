@@ -78,8 +78,8 @@ Result<void> Cloth::write_positions(std::span<const Vec3> in) {
     impl_->state.position.set(impl_->slot(i), to_internal(in[i]));
   }
   impl_->state.wake();
-  impl_->state.pins.put_down(impl_->state.position);
-  impl_->state.anchors.put_down();
+  impl_->state.pins.teleport(impl_->state.position);
+  impl_->state.anchors.teleport();
   impl_->state.placed = true;
   impl_->state.lost_energy = 0;
   impl_->state.refinement = 0;

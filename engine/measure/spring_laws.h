@@ -13,8 +13,8 @@
 ///
 /// and so is its tolerance divided. A rigid constraint has softness 0, and its own length.
 ///
-/// Where a start is projected springs have some time to give way, without damping; and softer ones
-/// than were asked for are left as they are, as if they were infinitely soft.
+/// While a start is projected springs have some time to relax, without damping. Springs that are
+/// softer than a given compliance are left as they are, as if they were infinitely soft.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-/// Bending elements: what keeps a mesh from folding.
+/// The bending elements of a mesh.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-/// How stiff bending elements are to be, so that all directions bend alike.
+/// Stiffnesses of bending elements with which all directions bend alike.
 #pragma once
 
 #include <vector>

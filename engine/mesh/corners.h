@@ -1,4 +1,4 @@
-/// Which corners of faces are at a particle.
+/// The corners of faces at each particle.
 #pragma once
 
 #include <span>

@@ -9,7 +9,7 @@ namespace weft::mesh {
 namespace {
 
 /// So many edges are flipped at most, per face. In a plane far fewer are. Edges of faces that are
-/// curved at rest could be flipped to and fro.
+/// curved at rest could be flipped back and forth.
 constexpr std::size_t kMostFlips = 16;
 /// So that rounding flips nothing: four corners of a rectangle have a sum of 0.
 constexpr double kLeastCotangent = 1e-6;

@@ -1,4 +1,4 @@
-/// Which faces meet at an edge.
+/// The faces that meet at each edge.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-/// Which sides of quads are warp and which are weft.
+/// The sides of quads that are warp, and those that are weft.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-/// The pieces that a scene consists of, and which of them nothing holds.
+/// The pieces of a scene, and those that nothing holds.
 #pragma once
 
 #include <weft/weft.h>

@@ -1,4 +1,4 @@
-/// Bending elements by themselves: what they read, and what weight that is to have.
+/// Single bending elements: the curvature that each reads, and its weight.
 #pragma once
 
 #include <weft/weft.h>

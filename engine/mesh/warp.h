@@ -1,4 +1,4 @@
-/// Where a mesh says that the warp runs.
+/// The direction of the warp that a mesh gives.
 #pragma once
 
 #include <weft/mesh.h>

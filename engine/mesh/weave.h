@@ -1,4 +1,4 @@
-/// Where warp and weft run in each face, and which quads are cells of them.
+/// The directions of warp and weft in each face, and the quads that are woven cells.
 #pragma once
 
 #include <weft/mesh.h>

@@ -1,4 +1,4 @@
-/// Which vertices are one particle.
+/// Vertices that share a particle.
 #pragma once
 
 #include <weft/mesh.h>

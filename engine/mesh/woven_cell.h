@@ -1,4 +1,4 @@
-/// A quad of fabric as springs along its sides and diagonals, where these can carry the material.
+/// A quad of fabric as springs along its sides and diagonals, if these can represent the material.
 #pragma once
 
 #include <weft/mesh.h>

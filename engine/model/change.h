@@ -1,9 +1,8 @@
 /// Models that differ from others in numbers (Cloth::change).
 ///
-/// Data prepared from constraints are shared where none of them changes. Changes of a model make
-/// the model that build_model makes of the changed description, so that whatever is known of models
-/// holds for it. Descriptions are not kept: a model holds all that it was made of, and tells it
-/// when it is asked.
+/// Data prepared from constraints are shared where none of them changes. A changed model is the one
+/// that build_model makes of the changed description, so all properties of models hold for it.
+/// Descriptions are not kept: a model can give its description at any time.
 #pragma once
 
 #include <weft/weft.h>

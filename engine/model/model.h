@@ -1,5 +1,5 @@
-/// The immutable part of a cloth: who is joined to whom and how. Shared by any number of Cloths;
-/// one that is changed goes on with another model (engine/model/change.h).
+/// The immutable part of a cloth: particles, and the elements that join them. Any number of Cloths
+/// share it; one that is changed goes on with another model (engine/model/change.h).
 ///
 /// Inside the engine particles are numbered by slot (engine/ordering/ordering.h); the description's
 /// numbers appear only at the interface.
@@ -307,7 +307,7 @@ class Model {
   void append(const Constraint& constraint, std::uint32_t described, std::uint32_t a,
               std::uint32_t b);
 
-  std::vector<std::uint64_t> joined_;  // a sphere, and who is joined to it, in order
+  std::vector<std::uint64_t> joined_;  // a sphere, and the particles joined to it, in order
   OnDemand<ReferenceLayout> reference_;
   OnDemand<SimdLayout> simd_;
   OnDemand<ChunkNeighbours> chunk_neighbours_;

@@ -1,4 +1,4 @@
-/// Ways along joins of given lengths.
+/// Shortest paths along links of given lengths.
 #pragma once
 
 #include <weft/scene.h>

@@ -35,11 +35,11 @@ class OnDemand {
     bytes_ = value_ == nullptr ? 0 : value_->bytes();
     made_ = value_ != nullptr;
   }
-  /// Null as long as nobody has asked.
+  /// Null until it is first asked for.
   const T* if_made() const {
     return made_.load(std::memory_order_acquire) ? value_.get() : nullptr;
   }
-  /// Bytes of memory; 0 as long as nobody has asked.
+  /// Bytes of memory; 0 until it is first asked for.
   std::size_t bytes() const { return made_.load(std::memory_order_acquire) ? bytes_ : 0; }
 
  private:

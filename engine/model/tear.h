@@ -1,7 +1,7 @@
 /// Models of cloth that has torn (Tear in weft/scene.h).
 ///
-/// The description is changed at the torn place, and a model is made of it, as changes of numbers
-/// are (change.h). So whatever is known of models holds for a torn one.
+/// The description is changed at the torn place, and a model is made of it, as for changes of
+/// numbers (change.h). So all properties of models hold for a torn one.
 #pragma once
 
 #include <weft/weft.h>

@@ -1,4 +1,4 @@
-/// Where particles and constraints stand in memory, so that the loops over them are contiguous.
+/// The order of particles and constraints in memory, in which loops over them are contiguous.
 ///
 ///   slots       particles in memory order; some slots are padding and hold no particle
 ///   tile        a range of slots that fits into the cache of a core; only the constraints between

@@ -81,7 +81,7 @@ void Crew::help_others() {
   }
 }
 
-/// Returns whether there was somebody to help.
+/// Returns whether there was a team to help.
 bool Crew::help_one() {
   return std::ranges::any_of(open_, [](const std::atomic<Team::SharedState*>& open) {
     Team::SharedState* shared = open.load(std::memory_order_acquire);

@@ -1,10 +1,10 @@
 /// Threads that do many pieces of work together, large and small ones.
 ///
-/// Every thread of a crew does the same: it takes the next piece that nobody has taken, large ones
-/// first, and leads it, as the leader of a Team. When none is left it joins the team of a large one
-/// that is under way, and then another, until there is none that has room.
+/// Every thread of a crew does the same: it takes the next piece that no thread has taken, large
+/// ones first, and leads it, as the leader of a Team. When none is left it joins the team of a
+/// large one that is under way, and then another, until all teams are full.
 ///
-/// So it does not matter which thread comes first, nor whether others come at all: who comes alone
+/// So it does not matter which thread comes first, nor whether others come at all: a single thread
 /// does everything. No thread waits for one that has not come.
 #pragma once
 

@@ -1,5 +1,5 @@
-/// Threads that come to something while it is open, and are waited for when it has closed. Those
-/// that come too late find it closed.
+/// A meeting of threads: they may join while it is open, and the thread that closes it waits for
+/// them. Late threads find it closed.
 #pragma once
 
 #include <atomic>
@@ -26,7 +26,7 @@ class Gathering {
   std::uint32_t joined() const { return joined_.load(std::memory_order_relaxed); }
   std::uint32_t places() const { return places_.load(std::memory_order_relaxed); }
 
-  /// The number of who comes, from 1 on, or 0 where it is closed or full.
+  /// The number of the thread that joins, from 1 on, or 0 if it is closed or full.
   std::uint32_t join() {
     std::uint32_t before = joined_.load();
     do {
@@ -34,7 +34,7 @@ class Gathering {
     } while (!joined_.compare_exchange_weak(before, before + 1, std::memory_order_acq_rel));
     return before + 1;
   }
-  /// By who has joined, as the last thing.
+  /// The last call of a thread that has joined.
   void leave() { left_.fetch_add(1, std::memory_order_release); }
 
  private:

@@ -31,7 +31,7 @@ Team::Team(int threads, SharedState& shared)
   shared.workers.open(static_cast<std::uint32_t>(max_workers_));
 }
 
-/// Closes the team and waits until everybody who has joined departs.
+/// Closes the team and waits until all threads that joined have left.
 Team::~Team() {
   if (max_workers_ == 0) return;
   const std::uint32_t came = shared_->workers.close();
@@ -83,7 +83,7 @@ bool Team::SharedState::all_done(const Loop& loop) const {
   return share == loop.shares;
 }
 
-/// Returns false if somebody else has claimed the share, or if the loop is over. The leader does
+/// Returns false if another thread has claimed the share, or if the loop is over. The leader does
 /// not leave a loop while a share of it is claimed and not done, so the work stays what it is.
 bool Team::SharedState::claim(const Loop& loop, std::uint32_t share) {
   std::uint64_t before = progress[share].value.load(std::memory_order_relaxed);

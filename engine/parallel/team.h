@@ -7,7 +7,7 @@
 ///     leader:  publishes a loop, does share 0, waits for the other shares
 ///     worker:  waits for the next loop, does its share
 ///
-/// Starting and ending a loop costs what it takes a cache line to cross between processors, twice.
+/// To start and end a loop takes two transfers of a cache line between processors.
 /// So everything that describes a loop is in one line, and every share has a line of its own.
 ///
 /// The leader never waits for a worker that has not come. Shares are made for the workers that
@@ -97,7 +97,8 @@ struct Team::SharedState {
   };
   struct alignas(kCacheLine) Published {
     std::atomic<std::uint64_t> loop{0};
-    LoopWork work;  // written by the leader between loops, read by whoever has claimed a share
+    LoopWork
+        work;  // written by the leader between loops, read by threads that have claimed a share
   };
   /// 2 n - 1 when a share of loop n is claimed, 2 n when it is done.
   struct alignas(kCacheLine) Progress {

@@ -1,5 +1,5 @@
-/// Writes what a cloth does to a file (recording.h), part by part, so that a program that crashes
-/// leaves the calls that led there.
+/// Writes the calls on a cloth to a file (recording.h), part by part: a program that crashes leaves
+/// all calls before the crash.
 #pragma once
 
 #include <weft/weft.h>

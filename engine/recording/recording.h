@@ -1,9 +1,8 @@
 /// The steps of a cloth as bytes, to be done again elsewhere bit for bit (Cloth::begin_recording).
 ///
-/// A recording is a row of parts: the start (settings, model, state), and then of each step what
-/// calls changed before it, and its status with the hash of the state that it reached. Calls are
-/// told by what differs in the saved state and the model, so that none can be forgotten. Each part
-/// has a checksum.
+/// A recording is a row of parts: the start (settings, model, state), and then for each step the
+/// changes by calls before it, its status, and the hash of the state that it reached. Changes are
+/// found by comparing saved states and models, so no call can be missed. Each part has a checksum.
 #pragma once
 
 #include <weft/weft.h>

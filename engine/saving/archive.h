@@ -8,8 +8,8 @@
 ///       archive(first, second);
 ///     }
 ///
-/// A reader trusts nothing: it never reads beyond its bytes, and takes no more memory than in
-/// proportion to them. Whether what was read makes sense is for the part to say.
+/// A reader never reads beyond its bytes, and allocates memory only in proportion to them. Each
+/// part checks the values that were read.
 #pragma once
 
 #include <array>

@@ -1,6 +1,5 @@
-/// Bytes that tell whether they are whole: what they are, their version, their number and a
-/// checksum go before them. A single byte that is another one is found for certain, other damage
-/// but for one case in 2^64.
+/// Bytes that detect damage: their kind, version, number and checksum go before them. A single
+/// changed byte is always detected; other damage is missed in one case in 2^64.
 #pragma once
 
 #include <weft/result.h>

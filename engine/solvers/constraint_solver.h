@@ -21,7 +21,7 @@ struct PositionTask {
   kernels::VectorsView x;  // in: the prediction; out: the solution, or the nearest that was found
   kernels::VectorsView start;  // where the substep began
   SphereContacts& contacts;    // of which measuring uses the scratch
-  double h = 0;                // s, of the substep
+  double dt_substep = 0;       // s, of the substep
   bool along_start = false;    // impulses act along the directions at `start` (scheme rattle)
   bool first_round = true;     // contacts were found anew: accumulated impulses begin at 0
   int max_iterations = 1;

@@ -1,5 +1,5 @@
-/// Pairs that may come to touch within a while. All particles are searched once; then these pairs
-/// alone are looked at, until something has moved too far.
+/// Pairs that may come to touch within a while. All particles are searched once. Then only these
+/// pairs are checked, until something has moved too far.
 #pragma once
 
 #include <cstdint>

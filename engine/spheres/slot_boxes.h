@@ -1,4 +1,5 @@
-/// Boxes around groups of particles, so that a sphere is held against those only that it may meet.
+/// Boxes around groups of particles, so that a sphere is compared only with particles that it may
+/// meet.
 #pragma once
 
 #include <algorithm>

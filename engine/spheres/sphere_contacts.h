@@ -1,5 +1,5 @@
-/// Which pairs may touch in this step. Contacts exist between the spheres of a scene and all other
-/// particles, pairs joined by a constraint excepted.
+/// Pairs that may touch in this step. Contacts exist between the spheres of a scene and all other
+/// particles, except pairs joined by a constraint.
 #pragma once
 
 #include <cstdint>

@@ -14,23 +14,23 @@ namespace {
 using kernels::Vector;
 
 /// At a corner of a triangle, from twice its area vector and three times its velocity.
-Resistance resistance_of(const AirStore& air, Vector area2, Vector v3) {
+AirCoefficients air_coefficients_of(const AirStore& air, Vector area2, Vector v3) {
   const double flow = dot(area2, v3);
-  Resistance corner{.rate = air.density / 36 * air.drag * std::abs(flow)};
+  AirCoefficients corner{.rate = air.density / 36 * air.drag * std::abs(flow)};
   if (air.lift == 0) return corner;
   const double size = std::sqrt(dot(area2, area2) * dot(v3, v3));
   if (size > 0) corner.spin = (air.density / 36 * air.lift * (flow / size)) * cross(v3, area2);
   return corner;
 }
 
-void find_resistances(State& s, kernels::VectorsView x, kernels::VectorsView v, std::size_t first,
-                      std::size_t last) {
+void find_air_coefficients(State& s, kernels::VectorsView x, kernels::VectorsView v,
+                           std::size_t first, std::size_t last) {
   const AirStore& air = s.model->air;
   for (std::size_t i = first; i < last; ++i) {
     const auto [a, b, c] = air.triangles[i];
     const Vector from = x[a], area2 = cross(x[b] - from, x[c] - from);
     const Vector wind = s.wind_at((1. / 3) * (x[a] + x[b] + x[c]));
-    s.resistances[i] = resistance_of(air, area2, v[a] + v[b] + v[c] - 3.0 * wind);
+    s.air_coefficients[i] = air_coefficients_of(air, area2, v[a] + v[b] + v[c] - 3.0 * wind);
   }
 }
 
@@ -41,11 +41,11 @@ Vector solve(double rate, Vector spin, Vector load) {
   return over * (load + dot(turn, load) * turn - cross(turn, load));
 }
 
-Resistance resistance_at(const State& s, std::size_t slot) {
-  Resistance sum;
+AirCoefficients air_coefficients_at(const State& s, std::size_t slot) {
+  AirCoefficients sum;
   for (const std::uint32_t i : s.model->air.at[slot]) {
-    sum.rate += s.resistances[i].rate;
-    sum.spin = sum.spin + s.resistances[i].spin;
+    sum.rate += s.air_coefficients[i].rate;
+    sum.spin = sum.spin + s.air_coefficients[i].spin;
   }
   return sum;
 }
@@ -56,15 +56,15 @@ double share_of_decay(double rate, double h) {
 }
 
 /// During h, of which forces act for the share q, with the rate of decay c.
-Vector resisted_acceleration(const State& s, std::size_t slot, Vector x, Vector v_here, double c,
-                             double q, double h) {
+Vector mean_acceleration_during(const State& s, std::size_t slot, Vector x, Vector v_here, double c,
+                                double q, double h) {
   const Model& model = *s.model;
   const double w = model.inverse_mass[slot];
   const Vector lost = c * v_here;
   Vector load = s.gravity - lost;
   if (s.force.size() > 0) load = load + w * s.force[slot];
   if (!model.has_air()) return q * (load + lost);
-  const Resistance r = resistance_at(s, slot);
+  const AirCoefficients r = air_coefficients_at(s, slot);
   const Vector v = v_here - s.wind_at(x), spin = w * r.spin;
   load = load - (w * r.rate) * v - cross(spin, v);
   return q * (solve(1 + q * h * w * r.rate, (q * h) * spin, load) + lost);
@@ -72,24 +72,24 @@ Vector resisted_acceleration(const State& s, std::size_t slot, Vector x, Vector 
 
 }  // namespace
 
-void find_resistance(State& s, double c, double h, Team& team) {
-  find_resistance(s, s.position.view(), s.velocity.view(), c, h, team);
+void find_velocity_forces(State& s, double c, double h, Team& team) {
+  find_velocity_forces(s, s.position.view(), s.velocity.view(), c, h, team);
 }
 
-void find_resistance(State& s, kernels::VectorsView x, kernels::VectorsView v, double c, double h,
-                     Team& team) {
+void find_velocity_forces(State& s, kernels::VectorsView x, kernels::VectorsView v, double c,
+                          double h, Team& team) {
   const Model& model = *s.model;
   if (model.has_air()) {
     team.for_each_part(
         model.air.triangles.size(), kStretch,
-        [&](std::size_t first, std::size_t last) { find_resistances(s, x, v, first, last); });
+        [&](std::size_t first, std::size_t last) { find_air_coefficients(s, x, v, first, last); });
   }
   find_ram(s, x, v, h);
   const double q = share_of_decay(c, h);
   team.for_each_part(model.slots(), kStretch, [&](std::size_t first, std::size_t last) {
     for (std::size_t slot = first; slot < last; ++slot) {
       if (model.inverse_mass[slot] == 0) continue;
-      const Vector a = resisted_acceleration(s, slot, x[slot], v[slot], c, q, h);
+      const Vector a = mean_acceleration_during(s, slot, x[slot], v[slot], c, q, h);
       s.total_force.set(slot, model.mass[slot] * (a - s.gravity));
     }
   });

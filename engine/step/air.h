@@ -1,8 +1,8 @@
 /// Forces that depend on velocities: of the air, and the decay of all motion. In small steps motion
 /// decays by itself (solvers/small_steps/small_steps.h): to them c is 0 here.
 ///
-/// They are found where a time h begins and held during it: by the exact solvers for a substep, by
-/// small steps for one or for a few (parts_for_air). With v the mean velocity of its corners
+/// They are found at the start of a time h and held during it: for a substep by the exact solvers,
+/// for one or a few by small steps (parts_for_air). With v the mean velocity of its corners
 /// relative to the wind, a triangle of area A and unit normal n gives each corner, which moves with
 /// v_i, a third of
 ///
@@ -22,11 +22,11 @@
 ///     q = (1 - e^(-c h)) / (c h),    (1 + q h R / m) y + (q h S / m) x y
 ///                                        = g + (external + f) / m - c v
 ///
-/// A free particle's velocity changes by q h y in all: by nothing exactly where the forces balance,
-/// so that what falls reaches its terminal velocity at any h. Air at rest takes energy from it at
-/// any h, however light it is: this is the implicit Euler method of a linear force that opposes
-/// motion. Where constraints hold it against the air, R and S weaken and turn what else acts on it,
-/// by a share of the order of h (R + |S|) / m.
+/// A free particle's velocity changes by q h y in all. It does not change if the forces balance, so
+/// falling cloth reaches its terminal velocity at any h. Air at rest takes energy from a particle
+/// at any h, however light it is: this is the implicit Euler method of a linear force that opposes
+/// motion. Where constraints hold a particle against the air, R and S weaken and turn the other
+/// forces on it, by a share of the order of h (R + |S|) / m.
 #pragma once
 
 #include "engine/step/state.h"
@@ -34,11 +34,11 @@
 namespace weft {
 
 /// State::total_force during h from here on, with the rate of decay c, but for pressures; and the
-/// ram pressure. Only where State::total_force has room.
-void find_resistance(State& s, double c, double h, Team& team);
+/// ram pressure. Only where State::total_force has a size.
+void find_velocity_forces(State& s, double c, double h, Team& team);
 /// The same for particles at x with the velocities v.
-void find_resistance(State& s, kernels::VectorsView x, kernels::VectorsView v, double c, double h,
-                     Team& team);
+void find_velocity_forces(State& s, kernels::VectorsView x, kernels::VectorsView v, double c,
+                          double h, Team& team);
 /// How fast the air acts, in the mean over the cloth: with U the speed of the cloth relative to it,
 /// C the sum of drag and lift, s the mass of the cloth per area and l the size of its cells,
 ///

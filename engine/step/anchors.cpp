@@ -87,7 +87,7 @@ void Anchors::move(std::span<const Vec3> points, std::span<const Vec3> normals) 
   }
 }
 
-void Anchors::put_down() {
+void Anchors::teleport() {
   from_ = to_;
   most_from_ = most_to_;
   moves_ = false;

@@ -1,5 +1,5 @@
-/// Where the anchors of a cloth are, and where they travel to (Cloth::move_anchors). Their numbers
-/// are those of the model's.
+/// The places of a cloth's anchors, and the places to which they travel (Cloth::move_anchors).
+/// Anchors have the numbers of the model.
 #pragma once
 
 #include <span>
@@ -25,8 +25,8 @@ class Anchors {
 
   /// normals: or none, and they stay.
   void move(std::span<const Vec3> points, std::span<const Vec3> normals);
-  /// All positions were replaced: nobody travels, and no limit changes by and by.
-  void put_down();
+  /// All positions were replaced: no anchor travels, and limits change at once.
+  void teleport();
   /// All are taken along: moved(point), turned(normal).
   template <class Moved, class Turned>
   void carry(Moved&& moved, Turned&& turned) {
@@ -39,8 +39,8 @@ class Anchors {
   void limit(std::uint32_t anchor, const AnchorLimit& limit);
   void scale(double scale);
   const std::vector<AnchorLimit>& limits() const { return asked_; }
-  /// Before a step of dt, when pins are under way: what was let go and is held again begins where
-  /// it is.
+  /// Before a step of dt, when pins are under way: a particle that is held again begins where it
+  /// is.
   void depart(const AnchorStore& store, const kernels::Vectors& x, const kernels::Vectors& v,
               double dt);
   /// After depart. arrived: the step was done; else all is as it was before.

@@ -1,4 +1,4 @@
-/// One way to advance a state by h, and what became of it.
+/// One way to advance a state by a substep or a part of it, and its outcome.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-/// The loads of the cloth in a step, as far as they are known when it begins: small steps choose
-/// their length by them.
+/// The loads of the cloth in a step, as far as they are known when it begins. The length of small
+/// steps depends on them.
 #pragma once
 
 #include "engine/solvers/small_steps/small_steps_load.h"

@@ -1,4 +1,4 @@
-/// Taking a cloth along without its feeling so (Cloth::carry).
+/// Moves a whole cloth without accelerating it (Cloth::carry).
 #pragma once
 
 #include "engine/step/state.h"

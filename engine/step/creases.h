@@ -1,4 +1,4 @@
-/// How the hinges of a cloth rest that have yielded (BendingElement).
+/// The angles at rest of hinges that have yielded (BendingElement).
 #pragma once
 
 #include <span>

@@ -1,14 +1,15 @@
-/// Energy that the solution of constraints brings about: the guard, and what scheme rattle is
-/// rejected for.
+/// Energy that the solution of constraints adds: the guard, and the test that rejects scheme
+/// rattle.
 ///
-/// With D, by how much solving moves a particle, and K, what the velocity loop adds, a substep is
+/// Let D be the displacement of a particle by solving, and K the velocity that the velocity loop
+/// adds. A substep is
 ///
 ///     x' = x + h v + h^2/2 a + D,    v' = v + h a + D / h + K
 ///
-/// An error that is left within tolerance is a loaded spring: its correction, D, comes back as the
-/// speed D / h, the more the shorter the substep. And Newton's method, or yarns, may end in a place
-/// that keeps all constraints far from where the motion leads: the energy of D / h is then gained.
-/// So a substep, but for those of the paper's own loop, is guarded:
+/// An error within tolerance is a loaded spring: its correction, D, comes back as the speed D / h,
+/// which is larger in shorter substeps. Moreover, Newton's method or yarns may find a solution far
+/// from the predicted positions: then the energy of D / h is gained. So all substeps but those of
+/// the paper's own loop are guarded:
 ///
 ///     1/2 sum m |v'|^2 - m |v|^2 - 2 m a . (x' - x)  <=  work of moved pins
 ///
@@ -16,10 +17,10 @@
 /// pins under way, only the motion that differs from theirs is slowed down (pin_work.h).
 ///
 /// Scheme rattle takes D along the directions at x and K along those at x'. Both are h/2 times the
-/// acceleration that the constraints cause, but for O(h^2), and what they do to the energy cancels
-/// as far. If h does not resolve the motion, because a tension T swings a constraint faster than
-/// that (h^2 T / (m rest) of about 1), energy rises by much of what K is worth. Two measures of the
-/// gain each count one thing too much, and the smaller one holds:
+/// acceleration by the constraints, up to O(h^2), and their effects on the energy cancel as far. If
+/// h does not resolve the motion, because a tension T swings a constraint faster than that (h^2 T /
+/// (m rest) of about 1), the gain is a large part of the energy of K. Two measures of the gain each
+/// count one thing too much, and the smaller one holds:
 ///
 ///     1/2 sum m |v'|^2 - m |v|^2 - 2 m a . (x' - x)    counts the work of moved pins, but for what
 ///                                                      is known of it (pin_work.h)
@@ -31,11 +32,11 @@
 
 namespace weft {
 
-/// Whether a substep by scheme rattle gains much of what its impulses are worth.
+/// Whether a substep by scheme rattle gains a large part of the energy of its impulses.
 bool gains_energy(const State& s, const kernels::ImpulseEnergy& impulses, double h);
 
 /// The guard of a substep by a solver, from (position, velocity) to (solved, next_velocity). Gains
-/// of less than a share of what its impulses are worth are left alone, unless the substep is
+/// below a share of the energy of its impulses are left alone, unless the substep is
 /// suspect: another attempt was rejected before. Returns false if the velocities hold less energy
 /// than the gain: then the substep has lifted its particles to a wrong place. Cheap if nothing is
 /// gained. impulses.gain falls by the energy that is taken.

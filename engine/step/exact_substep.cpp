@@ -44,8 +44,8 @@ kernels::LoopResult solve_positions(State& s, ConstraintSolver& solver, Position
   return sum;
 }
 
-void find_elastic_energy(State& s, double h) {
-  s.elastic_energy = energy_of_springs(*s.model, s.position, h * h);
+void find_elastic_energy(State& s, double dt_substep) {
+  s.elastic_energy = energy_of_springs(*s.model, s.position, dt_substep * dt_substep);
 }
 
 Status correct_velocities(State& s, ConstraintSolver& solver, bool exact, const Budget& budget,
@@ -76,12 +76,17 @@ namespace {
 /// A substep that is being done.
 class ExactSubstep {
  public:
-  ExactSubstep(State& s, const Attempt& attempt, double h, const Budget& budget, StepReport& report,
-               Team& team)
-      : s_(s), attempt_(attempt), h_(h), budget_(budget), report_(report), team_(team) {}
+  ExactSubstep(State& s, const Attempt& attempt, double dt_substep, const Budget& budget,
+               StepReport& report, Team& team)
+      : s_(s),
+        attempt_(attempt),
+        dt_substep_(dt_substep),
+        budget_(budget),
+        report_(report),
+        team_(team) {}
 
   Trial run(bool is_predicted) {
-    if (!is_predicted) timed(report_, Stage::predict, [&] { predict(s_, h_, team_); });
+    if (!is_predicted) timed(report_, Stage::predict, [&] { predict(s_, dt_substep_, team_); });
     find_contacts(s_, report_);
     timed(report_, Stage::solve_positions, [&] { solve_positions(); });
     if (trial_.outcome != Outcome::accepted) return trial_;
@@ -92,14 +97,15 @@ class ExactSubstep {
     if (trial_.outcome != Outcome::accepted) return trial_;
     if (s_.laws) release_energy();
     watch_energy();
-    if (s_.pins.moving()) trial_.pin_work = work_of(motion_of_pins(s_, h_), s_, h_);
+    if (s_.pins.moving())
+      trial_.pin_work = work_of(motion_of_pins(s_, dt_substep_), s_, dt_substep_);
     if (needs_energy() && !corrects_longer_substeps())
       trial_.energy_lost = trial_.pin_work - 0.5 * impulses_.gain;
     watch_crossings();
     if (is_fixed()) trial_.status = std::max(trial_.status, Status::fixed_iterations);
     if (trial_.outcome != Outcome::accepted) return trial_;
     if (s_.laws) keep_springs();
-    s_.longest_substep = std::max(s_.longest_substep, h_);
+    s_.longest_substep = std::max(s_.longest_substep, dt_substep_);
     return trial_;
   }
 
@@ -112,11 +118,11 @@ class ExactSubstep {
   }
 
   void solve_positions() {
-    if (s_.laws) s_.laws->begin(*s_.model, s_.position.view(), h_, s_.settings.tolerance);
+    if (s_.laws) s_.laws->begin(*s_.model, s_.position.view(), dt_substep_, s_.settings.tolerance);
     const PositionTask task{.x = s_.solved.view(),
                             .start = s_.position.view(),
                             .contacts = s_.contacts,
-                            .h = h_,
+                            .dt_substep = dt_substep_,
                             .along_start = is_by_rattle(),
                             .max_iterations = budget_.positions,
                             .laws = s_.laws ? &*s_.laws : nullptr};
@@ -136,7 +142,8 @@ class ExactSubstep {
   }
 
   void set_velocities() {
-    const bool finite = needs_energy() ? commit(s_, h_, impulses_, team_) : commit(s_, h_, team_);
+    const bool finite =
+        needs_energy() ? commit(s_, dt_substep_, impulses_, team_) : commit(s_, dt_substep_, team_);
     if (!finite) trial_.outcome = Outcome::not_finite;
   }
 
@@ -146,14 +153,14 @@ class ExactSubstep {
       trial_.outcome = Outcome::rejected;
     }
     if (!all_finite(s_.next_velocity)) trial_.outcome = Outcome::not_finite;
-    if (needs_energy()) impulses_ = measure_impulses(s_, h_, team_);
+    if (needs_energy()) impulses_ = measure_impulses(s_, dt_substep_, team_);
   }
 
   bool is_papers_loop() const { return s_.settings.solver == Solver::gauss_seidel; }
   /// The paper's loop leaves errors within the tolerance. A solver that corrects in h the error of
   /// a longer substep gains energy by that.
   bool corrects_longer_substeps() const {
-    return is_papers_loop() && !is_by_rattle() && h_ < s_.longest_substep;
+    return is_papers_loop() && !is_by_rattle() && dt_substep_ < s_.longest_substep;
   }
   /// The paper's loop is left as it is where it converges: its gains belong to it. Others, and a
   /// loop that was cut off, may lead to a state that keeps the constraints far from the prediction.
@@ -164,13 +171,13 @@ class ExactSubstep {
 
   /// Energy that springs have released is no gain.
   void release_energy() {
-    elastic_energy_ = energy_of_tensions(*s_.laws, s_.model->constraints, h_);
+    elastic_energy_ = energy_of_tensions(*s_.laws, s_.model->constraints, dt_substep_);
     impulses_.gain -= 2 * (s_.elastic_energy - elastic_energy_);
   }
 
   void keep_springs() {
     s_.elastic_energy = elastic_energy_;
-    s_.give_per_mass = h_ * h_;
+    s_.give_per_mass = dt_substep_ * dt_substep_;
     report_.max_error = s_.settings.tolerance *
                         largest_violation(*s_.laws, s_.model->constraints, s_.solved.view());
   }
@@ -178,12 +185,12 @@ class ExactSubstep {
   void watch_energy() {
     if (!needs_energy()) return;
     if (is_by_rattle() && !attempt_.is_last) {
-      if (gains_energy(s_, impulses_, h_)) trial_.outcome = Outcome::rejected;
+      if (gains_energy(s_, impulses_, dt_substep_)) trial_.outcome = Outcome::rejected;
       return;
     }
     const bool is_suspect =
         attempt_.method != Method::by_solver || attempt_.parts > 1 || corrects_longer_substeps();
-    const bool is_kept = guard_energy(s_, impulses_, is_suspect, h_);
+    const bool is_kept = guard_energy(s_, impulses_, is_suspect, dt_substep_);
     if (!is_kept && !is_suspect && !attempt_.is_last) trial_.outcome = Outcome::rejected;
   }
 
@@ -200,7 +207,7 @@ class ExactSubstep {
 
   State& s_;
   const Attempt& attempt_;
-  const double h_;
+  const double dt_substep_;
   const Budget budget_;
   StepReport& report_;
   Team& team_;
@@ -212,9 +219,9 @@ class ExactSubstep {
 
 }  // namespace
 
-Trial exact_substep(State& s, const Attempt& attempt, double h, const Budget& budget,
+Trial exact_substep(State& s, const Attempt& attempt, double dt_substep, const Budget& budget,
                     bool is_predicted, StepReport& report, Team& team) {
-  return ExactSubstep(s, attempt, h, budget, report, team).run(is_predicted);
+  return ExactSubstep(s, attempt, dt_substep, budget, report, team).run(is_predicted);
 }
 
 }  // namespace weft

@@ -9,7 +9,7 @@ namespace weft {
 
 /// Computes the next state, in solved and next_velocity; position and velocity stay. is_predicted:
 /// solved is the prediction already.
-Trial exact_substep(State& s, const Attempt& attempt, double h, const Budget& budget,
+Trial exact_substep(State& s, const Attempt& attempt, double dt_substep, const Budget& budget,
                     bool is_predicted, StepReport& report, Team& team);
 
 /// Brings solved onto the constraints; rounds go on while the solution runs into contacts that the
@@ -22,10 +22,10 @@ kernels::LoopResult solve_positions(State& s, ConstraintSolver& solver, Position
 Status correct_velocities(State& s, ConstraintSolver& solver, bool exact, const Budget& budget,
                           StepReport& report, Team& team);
 
-/// elastic_energy, of positions that no substep has led to: as a substep of h resolves it.
-void find_elastic_energy(State& s, double h);
+/// elastic_energy, of positions that no substep has led to: as a substep of dt_substep resolves it.
+void find_elastic_energy(State& s, double dt_substep);
 
-/// Lists who may touch whom at solved.
+/// Lists the contacts that may occur at solved.
 void find_contacts(State& s, StepReport& report);
 
 }  // namespace weft

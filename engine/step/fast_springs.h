@@ -1,6 +1,6 @@
-/// Springs and triangles of fabric that swing faster than motion is seen. A caller who puts a cloth
-/// somewhere means its place and not the energy that its fabric would have there, so a projection
-/// puts these right as it does rigid edges (project.h).
+/// Springs and triangles of fabric that swing too fast to be seen. A caller who writes positions
+/// means places, and not the energy that the fabric would have there. So a projection corrects
+/// these as it corrects rigid edges (project.h).
 ///
 /// A spring between inverse masses w_a and w_b swings by itself with the angular frequency
 /// sqrt((w_a + w_b) / compliance). It is fast if it swings by more than a radian within the longest

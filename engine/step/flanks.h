@@ -1,8 +1,8 @@
-/// The flanks of a tear: what is at a particle that was split, and at the one that it gave off.
+/// The flanks of a tear: the elements at a particle that was split, and those at the new particle.
 ///
-/// Both lie in one place when a sheet is split, on no side of each other. So a broken seam joins
-/// them, and they touch nothing of each other, until they have come apart by the thickness and do
-/// not cross. From then on they are two borders of the cloth, as others are.
+/// Both are in one place when a sheet is split, on no side of each other. So a broken seam joins
+/// them, and they do not collide with each other until they are apart by the thickness and do not
+/// cross. From then on they are borders of the cloth like others.
 #pragma once
 
 #include <cstdint>

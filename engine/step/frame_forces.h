@@ -1,6 +1,6 @@
-/// Forces of a frame of small steps that change within it. The air acts for the frame as it was
-/// when this began (air.h), or, with State::air_parts above 1, is looked at anew where each part of
-/// the frame begins. Pressures follow the shape in every substep (pressure.h).
+/// Forces of a frame of small steps that change within it. The force of the air is that of
+/// the start of the frame (air.h) or, with State::air_parts above 1, of the start of each part of
+/// the frame. Pressures follow the shape in every substep (pressure.h).
 #pragma once
 
 #include <algorithm>
@@ -47,7 +47,7 @@ class FrameForces {
     end_part();
     for (std::size_t slot = 0; slot < s_.model->slots(); ++slot) {
       if (s_.model->inverse_mass[slot] == 0) continue;
-      const kernels::Vector mean = (1 / (plan_.h * plan_.substeps)) * s_.air_impulse[slot];
+      const kernels::Vector mean = (1 / (plan_.dt_substep * plan_.substeps)) * s_.air_impulse[slot];
       work_ -= dot(mean, s_.solved[slot] - s_.position[slot]);
       s_.total_force.set(slot, mean);
     }
@@ -59,8 +59,8 @@ class FrameForces {
     SmallSteps& solver = *s_.small_steps;
     solver.settle(team);
     solver.read_velocities(s_.next_velocity.view(), team);
-    const double h = plan_.h * std::min(looks_every_, places_.left());
-    find_resistance(s_, s_.solved.view(), s_.next_velocity.view(), 0, h, team);
+    const double h = plan_.dt_substep * std::min(looks_every_, places_.left());
+    find_velocity_forces(s_, s_.solved.view(), s_.next_velocity.view(), 0, h, team);
     if (presses_) {
       s_.pressed.beside = s_.total_force;
       press(s_, s_.solved.view());
@@ -69,7 +69,7 @@ class FrameForces {
   }
   /// Counts work of forces held since the last one began. Pressures are those of here from now on.
   void end_part() {
-    const double h = plan_.h * (places_.done() - begun_);
+    const double h = plan_.dt_substep * (places_.done() - begun_);
     const kernels::Vectors& beside = presses_ ? s_.pressed.beside : s_.total_force;
     for (std::size_t slot = 0; slot < s_.model->slots(); ++slot) {
       if (s_.model->inverse_mass[slot] == 0) continue;

@@ -1,5 +1,5 @@
-/// The passes of a frame of small steps beyond a sweep for each substep: how many it may take, in
-/// the time of sweeps, and how many it took.
+/// The passes of a frame of small steps beyond one sweep per substep: their bound, in times of
+/// sweeps, and their number.
 #pragma once
 
 #include <algorithm>

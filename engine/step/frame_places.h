@@ -1,4 +1,4 @@
-/// Where the particles of a frame of small steps are, and how much of it is done.
+/// The places of particles in a frame of small steps, and the part of it that is done.
 #pragma once
 
 #include <span>
@@ -35,7 +35,7 @@ class FramePlaces {
   /// Exactly where they travel to: lanes round their way.
   void place_pins() {
     if (!s_.pins.moving()) return;
-    const double time = plan_.h * done_;
+    const double time = plan_.dt_substep * done_;
     for (const std::uint32_t pin : s_.model->pins)
       s_.solved.set(pin, s_.position[pin] + time * s_.velocity[pin]);
   }

@@ -70,9 +70,9 @@ double length_of_last(const State& s) {
   return std::sqrt(tuning::kOmega * s.give_per_mass) / part;
 }
 
-/// Where a pin was made, let go or put down, what hangs on it need not pull: fabric that lies on a
-/// table does not. So substeps are no shorter than in the last frame, until one has much to put
-/// right.
+/// If a pin was fixed, released or teleported, the cloth at it need not pull: fabric that lies on a
+/// table does not. So substeps are no shorter than in the last frame, until a frame has much to
+/// correct.
 void keep_length(State& s, double dt) {
   const bool is_by_laws = refines_substeps(s) && s.settings.motion_tolerance == 0;
   if (!is_by_laws || !s.displaced || s.placed) return;
@@ -114,8 +114,9 @@ double refinement_for_motion(const State& s, const FramePlan& plan, double error
                              const Budget& budget) {
   constexpr double kLevel = 0.5;
   const double asked = s.settings.motion_tolerance;
-  const bool can_fall = plan.postponed == 0 && plan.substeps < most_substeps(budget) &&
-                        error > tuning::kOverRounding * s.small_steps->rounding_error(plan.h);
+  const bool can_fall =
+      plan.postponed == 0 && plan.substeps < most_substeps(budget) &&
+      error > tuning::kOverRounding * s.small_steps->rounding_error(plan.dt_substep);
   if (error > asked && can_fall) return s.refinement + kLevel;
   const bool is_small = error < tuning::kMotionSpare * asked;
   return is_small ? std::max(0.0, s.refinement - kLevel) : s.refinement;
@@ -129,7 +130,7 @@ double refinement_for_laws(const State& s, const FramePlan& plan, const FrameCou
   constexpr double kLevel = 0.25;
   const double share = course.beyond / plan.substeps;
   if (share > tuning::kMuchMended && plan.substeps < most_substeps(budget)) {
-    lengthening.take_back();
+    lengthening.revoke();
     return std::max(s.refinement, s.refinement - plan.postponed + std::log2(1 + share));
   }
   const double least = -std::log2(kWeightsOfSwing) / 2;
@@ -147,13 +148,13 @@ bool refines_substeps(const State& s) {
 }
 
 double give_per_mass(const State& s, const FramePlan& plan) {
-  const double bh = SubstepFormula::of(s.settings.scheme, 1).part * plan.h;
+  const double bh = SubstepFormula::of(s.settings.scheme, 1).part * plan.dt_substep;
   return bh * bh / plan.omega;
 }
 
 FramePlan plan_of_step(State& s, const Attempt& attempt, double dt, const Budget& budget) {
   const bool takes_over = takes_over_in(s);
-  FramePlan plan{.h = dt,
+  FramePlan plan{.dt_substep = dt,
                  .omega = tuning::kOmega,
                  .placed = s.placed || takes_over,
                  .anchors = s.anchors.travel(),
@@ -166,7 +167,7 @@ FramePlan plan_of_step(State& s, const Attempt& attempt, double dt, const Budget
   const double wanted = std::max(1.0, std::ceil(dt / usual));
   if (s.settings.substeps != kAutomaticSubsteps && !takes_over) {
     plan.substeps = s.settings.substeps;
-    plan.h = dt / plan.substeps;
+    plan.dt_substep = dt / plan.substeps;
     plan.passes = std::min<double>(budget.positions, passes_beyond(plan.substeps, wanted));
     keep_stiffness(s, dt, plan);
   } else {
@@ -174,9 +175,9 @@ FramePlan plan_of_step(State& s, const Attempt& attempt, double dt, const Budget
     plan.postponed = std::log2(length / usual);
     plan.substeps =
         static_cast<int>(std::clamp<double>(std::ceil(dt / length), 1, most_substeps(budget)));
-    plan.h = dt / plan.substeps;
+    plan.dt_substep = dt / plan.substeps;
     plan.passes = budget.positions - plan.substeps;
-    const double part = 2 * plan.h / length;
+    const double part = 2 * plan.dt_substep / length;
     if (part < 1) plan.omega *= part * part;
   }
   if (attempt.in_vain)
@@ -184,9 +185,9 @@ FramePlan plan_of_step(State& s, const Attempt& attempt, double dt, const Budget
   return plan;
 }
 
-FramePlan plan_of_projection(State& s, double softest, double h, bool goes_on,
+FramePlan plan_of_projection(State& s, double softest, double dt_frame, bool goes_on,
                              const Budget& budget) {
-  FramePlan plan{.h = h,
+  FramePlan plan{.dt_substep = dt_frame,
                  .passes = static_cast<double>(budget.positions),
                  .omega = tuning::kOmega,
                  .placed = true,
@@ -200,8 +201,8 @@ FramePlan plan_of_projection(State& s, double softest, double h, bool goes_on,
   return plan;
 }
 
-FramePlan plan_of_look_ahead(const State& s, double h) {
-  return {.h = h,
+FramePlan plan_of_look_ahead(const State& s, double dt_frame) {
+  return {.dt_substep = dt_frame,
           .omega = tuning::kOmega,
           .placed = true,
           .softest = std::numeric_limits<double>::infinity(),

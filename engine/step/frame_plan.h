@@ -16,12 +16,12 @@ bool refines_substeps(const State& s);
 /// is no stiffer. Work in vain is bounded as where a number of substeps was given. This writes over
 /// solved and, with free spheres, contacts.
 FramePlan plan_of_step(State& s, const Attempt& attempt, double dt, const Budget& budget);
-/// From rest; springs up to the compliance `softest` have the time h to give way, and softer ones
-/// are left as they are. goes_on: from where the last projection of this step has ended.
-FramePlan plan_of_projection(State& s, double softest, double h, bool goes_on,
+/// From rest; springs up to the compliance `softest` have the time dt_frame to give way, and softer
+/// ones are left as they are. goes_on: from where the last projection of this step has ended.
+FramePlan plan_of_projection(State& s, double softest, double dt_frame, bool goes_on,
                              const Budget& budget);
-/// A substep of h from rest, of all that acts but bodies.
-FramePlan plan_of_look_ahead(const State& s, double h);
+/// One substep of dt_frame from rest, of all that acts but bodies.
+FramePlan plan_of_look_ahead(const State& s, double dt_frame);
 
 /// s^2, of a sweep: its compliance over w_a + w_b.
 double give_per_mass(const State& s, const FramePlan& plan);

@@ -1,5 +1,5 @@
-/// The paper's spheres in a frame of small steps: which particles they touch, and which went
-/// through one.
+/// The paper's spheres in a frame of small steps: the particles that they touch, and particles that
+/// went through one.
 #pragma once
 
 #include <algorithm>

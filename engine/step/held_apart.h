@@ -1,5 +1,5 @@
-/// Seams and lengths that two held particles exclude where they are. Held are fixed particles, and
-/// those of anchors without a limit to move within: no solver moves them.
+/// Seams and lengths that two held particles exclude. Held particles are fixed ones, and those of
+/// anchors with a largest distance of 0: no solver moves them.
 #pragma once
 
 #include <weft/scene.h>

@@ -1,10 +1,10 @@
-/// How boldly substeps of fabric become longer again.
+/// The rate at which substeps of fabric become longer again.
 ///
 /// A sweep leaves an error that grows with the square of the length of a substep. So the error of
 /// the last frame predicts that of longer substeps. Cloth at rest may bear less than the tolerance:
-/// each change of length is a blow to it. A lengthening that had to be taken back shows how much
-/// was too much, and the next ones are predicted to leave at most half of that. Each one that holds
-/// lets the next one leave more again.
+/// each change of length shakes it. A lengthening that had to be revoked shows how much
+/// was too much, and the next ones are predicted to leave at most half of that. After each one that
+/// holds the next one may leave more again.
 ///
 /// Without this memory substeps of cloth that lies under load become longer until a frame fails,
 /// and shorter at once, for ever.
@@ -29,7 +29,7 @@ class Lengthening {
     return true;
   }
   /// Substeps have to become shorter. Where very little was predicted something else is the cause.
-  void take_back() {
+  void revoke() {
     if (predicted_ > tuning::kLeastBlamed) caution_ = kCaution / predicted_;
     predicted_ = 0;
   }
@@ -46,7 +46,7 @@ class Lengthening {
  private:
   static constexpr double kCaution = 2;
   double caution_ = 0;    // 1 over the most that may be predicted; 0: nothing was too much
-  double predicted_ = 0;  // in tolerances, by the last lengthening; 0: it was taken back
+  double predicted_ = 0;  // in tolerances, by the last lengthening; 0: it was revoked
 };
 
 }  // namespace weft

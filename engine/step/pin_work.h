@@ -1,9 +1,9 @@
 /// The work that moved pins do on a cloth in a substep.
 ///
-/// Solvers do not keep the impulses at pins, but their sums are known: what pins give is what the
-/// free particles get besides gravity, forces and bodies, J = m (v' - v - h a) each. A pin of
-/// velocity u that gives J does work u . J; all pins together, where they move as a rigid body
-/// does, u + s x (x - c),
+/// Solvers do not keep the impulses at pins, but their sum is known: it is the sum of the impulses
+/// J = m (v' - v - h a) that free particles receive besides gravity, forces and bodies. A pin of
+/// velocity u with the impulse J does the work u . J. If all pins move as one rigid body,
+/// u + s x (x - c), their work is
 ///
 ///     u . sum J  +  s . sum (x - c) x J
 ///

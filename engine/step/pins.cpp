@@ -29,23 +29,23 @@ std::size_t Pins::index_of(std::uint32_t slot) const {
   return is_there ? static_cast<std::size_t>(found - pins_.begin()) : pins_.size();
 }
 
-void Pins::put_down(const Vectors& position) {
+void Pins::teleport(const Vectors& position) {
   for (Pin& pin : pins_) pin.from = position[pin.slot];
-  put_down_.clear();
+  teleported_.clear();
 }
 
-void Pins::put_down(const Model& model, std::span<const std::uint32_t> particles,
+void Pins::teleport(const Model& model, std::span<const std::uint32_t> particles,
                     std::span<const Vec3> places, Vectors& position) {
   const auto slot_of = [&](std::size_t i) { return model.ordering.slot_of[particles[i]]; };
-  std::vector<Place> put_down = put_down_;  // all of them or, where memory runs out, none
-  put_down.reserve(put_down.size() + particles.size());
+  std::vector<Place> teleported = teleported_;  // all of them or, where memory runs out, none
+  teleported.reserve(teleported.size() + particles.size());
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const std::size_t pin = index_of(slot_of(i));
-    put_down.push_back({slot_of(i), pin < pins_.size() ? pins_[pin].from : position[slot_of(i)]});
+    teleported.push_back({slot_of(i), pin < pins_.size() ? pins_[pin].from : position[slot_of(i)]});
   }
-  std::ranges::stable_sort(put_down, {}, &Place::slot);
-  erase_repeated(put_down, &Place::slot);  // the first one counts
-  put_down_ = std::move(put_down);
+  std::ranges::stable_sort(teleported, {}, &Place::slot);
+  erase_repeated(teleported, &Place::slot);  // the first one counts
+  teleported_ = std::move(teleported);
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const Vector place{places[i].x, places[i].y, places[i].z};
     const std::size_t pin = index_of(slot_of(i));
@@ -54,8 +54,8 @@ void Pins::put_down(const Model& model, std::span<const std::uint32_t> particles
   }
 }
 
-void Pins::take_back(Vectors& position) const {
-  for (const Place& place : put_down_) position.set(place.slot, place.before);
+void Pins::undo_teleports(Vectors& position) const {
+  for (const Place& place : teleported_) position.set(place.slot, place.before);
 }
 
 void Pins::rest() {
@@ -64,11 +64,11 @@ void Pins::rest() {
 
 void Pins::go_on_from(const Pins& from, const Model& its_model, const Model& model,
                       const Vectors& position) {
-  for (const Place& place : from.put_down_) {
+  for (const Place& place : from.teleported_) {
     const std::uint32_t slot = model.ordering.slot_of[its_model.ordering.particle_at[place.slot]];
-    if (model.inverse_mass[slot] == 0) put_down_.push_back({slot, place.before});
+    if (model.inverse_mass[slot] == 0) teleported_.push_back({slot, place.before});
   }
-  std::ranges::sort(put_down_, {}, &Place::slot);
+  std::ranges::sort(teleported_, {}, &Place::slot);
   if (from.pins_.empty()) return;
   watch(model, position);
   moving_ = from.moving_;
@@ -93,7 +93,7 @@ void Pins::depart(double dt, Vectors& position, Vectors& velocity) {
 }
 
 void Pins::stop(bool arrived, Vectors& position, Vectors& velocity) {
-  if (arrived) put_down_.clear();
+  if (arrived) teleported_.clear();
   if (!moving_) return;
   if (arrived) moving_ = false;
   for (Pin& pin : pins_) {
@@ -116,10 +116,10 @@ bool Pins::fit(const Model& model) const {
     return std::ranges::binary_search(model.pins, p.slot);
   };
   return (pins_.empty() || std::ranges::equal(pins_, model.pins, {}, &Pin::slot)) &&
-         std::ranges::all_of(put_down_, is_pin) &&
-         std::ranges::is_sorted(put_down_, std::less_equal{}, &Place::slot);
+         std::ranges::all_of(teleported_, is_pin) &&
+         std::ranges::is_sorted(teleported_, std::less_equal{}, &Place::slot);
 }
 
-std::size_t Pins::bytes() const { return bytes_of(pins_) + bytes_of(put_down_); }
+std::size_t Pins::bytes() const { return bytes_of(pins_) + bytes_of(teleported_); }
 
 }  // namespace weft

@@ -19,44 +19,44 @@ class Pins {
  public:
   /// Before the first of some moves: remembers where the pins stand.
   void watch(const Model& model, const kernels::Vectors& position);
-  /// All positions were replaced: nobody travels, but who moved may go on at the same speed.
-  void put_down(const kernels::Vectors& position);
-  /// Puts these fixed particles, one after the other, to other places, without a way there.
-  void put_down(const Model& model, std::span<const std::uint32_t> particles,
+  /// All positions were replaced: no pin travels, but one that moved may go on at the same speed.
+  void teleport(const kernels::Vectors& position);
+  /// Teleports these fixed particles, one after the other.
+  void teleport(const Model& model, std::span<const std::uint32_t> particles,
                 std::span<const Vec3> places, kernels::Vectors& position);
-  /// Whether one was put down since the last step.
-  bool were_put_down() const { return !put_down_.empty(); }
-  /// Moves those that were put down to where they stood in the last step's end.
-  void take_back(kernels::Vectors& position) const;
-  /// All velocities were replaced: nobody has moved.
+  /// Whether one was teleported since the last step.
+  bool were_teleported() const { return !teleported_.empty(); }
+  /// Moves those that were teleported to where they stood when the last step ended.
+  void undo_teleports(kernels::Vectors& position) const;
+  /// All velocities were replaced: no pin has moved.
   void rest();
   /// Goes on from those of another model of the same particles; position: in the new slots.
   void go_on_from(const Pins& from, const Model& its_model, const Model& model,
                   const kernels::Vectors& position);
 
-  /// Everyone is taken along: moved(place), turned(velocity).
+  /// All pins are taken along: moved(place), turned(velocity).
   template <class Moved, class Turned>
   void carry(Moved&& moved, Turned&& turned) {
     for (Pin& pin : pins_) {
       pin.from = moved(pin.from);
       pin.last = turned(pin.last);
     }
-    for (Place& place : put_down_) place.before = moved(place.before);
+    for (Place& place : teleported_) place.before = moved(place.before);
   }
 
   /// Those that travel start where they were, with their velocities.
   void depart(double dt, kernels::Vectors& position, kernels::Vectors& velocity);
-  /// After depart: everyone is where the caller wants them. arrived: the step was done, and they
+  /// After depart: all pins are where the caller wants them. arrived: the step was done, and they
   /// are at rest; else all is as it was before.
   void stop(bool arrived, kernels::Vectors& position, kernels::Vectors& velocity);
-  /// Whether one has moved in this step or in the last: if not, nobody is under way.
+  /// Whether one has moved in this step or in the last: if not, no pin is under way.
   bool moving() const { return moving_; }
   /// In the last step.
   kernels::Vector last_velocity(std::uint32_t slot) const;
   std::size_t bytes() const;
   friend void visit_fields(Is<Pins> auto& part, auto& archive) {
-    auto& [pins, moving, put_down] = part;
-    archive(pins, moving, put_down);
+    auto& [pins, moving, teleported] = part;
+    archive(pins, moving, teleported);
   }
   /// Whether those that were read are the model's.
   bool fit(const Model& model) const;
@@ -73,7 +73,7 @@ class Pins {
       archive(slot, from, last);
     }
   };
-  /// A pin that was put down, and where it stood before.
+  /// A pin that was teleported, and where it stood before.
   struct Place {
     std::uint32_t slot = 0;
     kernels::Vector before{};
@@ -86,9 +86,9 @@ class Pins {
   /// In pins_; its size if none is watched there.
   std::size_t index_of(std::uint32_t slot) const;
 
-  std::vector<Pin> pins_;        // by slots; empty until one is moved
-  bool moving_ = false;          // see moving()
-  std::vector<Place> put_down_;  // by slots, each pin once
+  std::vector<Pin> pins_;          // by slots; empty until one is moved
+  bool moving_ = false;            // see moving()
+  std::vector<Place> teleported_;  // by slots, each pin once
 };
 
 }  // namespace weft

@@ -112,7 +112,7 @@ int most_substeps(const State& s) {
 }
 
 int substeps_wanted(State& s, double dt, Team& team) {
-  if (is_resisted(*s.model)) find_resistance(s, s.model->damping.motion, dt, team);
+  if (has_velocity_forces(*s.model)) find_velocity_forces(s, s.model->damping.motion, dt, team);
   predict(s, dt, team);
   const double bend = bend_after_motion(s, team);
   const double wanted = std::ceil(std::max(std::sqrt(bend), substeps_for_load(s, dt)));

@@ -1,5 +1,5 @@
-/// How a step is tried: the estimate of its substeps, and the ordered list of attempts that each of
-/// them may need.
+/// The plan of a step: the estimate of its substeps, and the ordered list of attempts for each of
+/// them.
 ///
 ///   1  scheme rattle, if the settings ask for it
 ///   2  the solver, in 1, 2, 4, 8 and 16 parts; State::refinement says where to begin
@@ -15,9 +15,9 @@
 ///
 /// Where pins are farther apart than the constraints between them reach, small steps are left out.
 ///
-/// The paper's loop (gauss_seidel) and a fixed number of iterations have nothing but the scheme
-/// that was asked for and, behind rattle, the paper's. A step by small steps is one attempt, whose
-/// work is bounded where pins are too far apart: no frame takes long in vain.
+/// The paper's loop (gauss_seidel) and a fixed number of iterations have one attempt, by the scheme
+/// of the settings, and after rattle a second one by the paper's. A step by small steps is one
+/// attempt. Its work is bounded where pins are too far apart: no frame takes long in vain.
 #pragma once
 
 #include <array>

@@ -15,8 +15,8 @@
 ///
 /// That is the implicit Euler method for the volume. Where the cloth holds the gas, p is q.
 ///
-/// Air that a piece catches presses as Air::ram says, but in h it takes from a free piece no more
-/// than the velocity along its mouth.
+/// Air that a piece catches presses as Air::ram says, but in h it takes at most the velocity along
+/// the mouth of a free piece.
 #pragma once
 
 #include <span>
@@ -37,8 +37,8 @@ double rate_of_ram(State& s);
 void begin_pressing(State& s);
 /// LastingState::gas for other pressures: a gas with the same triangles keeps its own.
 std::vector<double> gas_going_on(const State& s, std::span<const Pressure> next);
-/// s, of the longest substep in which a sweep bears the tension that pressures cause, with what the
-/// laws yield to it: of a ball with as much area it is T = p r / 2.
+/// s, of the longest substep in which a sweep carries the tension by pressures, with the compliance
+/// of the laws. The tension is that of a ball of the same area, T = p r / 2.
 double length_for_pressure(const State& s);
 /// Pressures at x, and State::total_force: that of pressures there, and State::pressed.beside.
 void press(State& s, kernels::VectorsView x);

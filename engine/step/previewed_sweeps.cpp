@@ -7,14 +7,14 @@ namespace weft {
 
 PreviewedSweeps::PreviewedSweeps(State& s) : s_(s), reference_(*s.model, s.settings) {}
 
-/// Until the commit nobody needs next_velocity.
+/// Until the commit next_velocity is not used.
 kernels::LoopResult PreviewedSweeps::solve_positions(const PositionTask& task, Team&) {
   reference::Motion motion = reference_motion(s_);
   motion.velocity = s_.next_velocity.view();
   const kernels::LoopLimits limits{.fixed_iterations = s_.settings.iterations,
                                    .max_iterations = task.max_iterations,
                                    .renew_after = s_.settings.measuring.renew_after};
-  return reference_.solve_previewed_positions(motion, task.h, task.contacts, task.laws,
+  return reference_.solve_previewed_positions(motion, task.dt_substep, task.contacts, task.laws,
                                               task.first_round, limits);
 }
 

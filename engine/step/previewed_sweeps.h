@@ -1,6 +1,6 @@
 /// The original method as the paper has it (kernels/reference/previewed.h), in double: both ends of
 /// a constraint are previewed at every visit. It is the baseline of `weft paper`, and no setting of
-/// a Cloth: who wants it makes it the solver of a State on the reference backend.
+/// a Cloth: `weft paper` makes it the solver of a State on the reference backend.
 #pragma once
 
 #include "engine/solvers/constraint_solver.h"

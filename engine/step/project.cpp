@@ -43,7 +43,7 @@ void look_ahead(State& s, double h, Team& team) {
   const PositionTask task{.x = s.solved.view(),
                           .start = s.position.view(),
                           .contacts = s.contacts,
-                          .h = h,
+                          .dt_substep = h,
                           .max_iterations = std::max(1, s.settings.max_iterations / 2),
                           .laws = &*s.laws};
   solve_positions(s, *s.solver, task, unused, team);
@@ -56,7 +56,7 @@ double largest_way(const kernels::Vectors& from, const kernels::Vectors& to) {
   return most;
 }
 
-/// Fast springs of which a pin was put down elsewhere, or whose rest has changed. Where positions
+/// Fast springs of which a pin was teleported, or whose rest has changed. Where positions
 /// were given they are misplaced if in a moment from rest they would become fast by changing their
 /// lengths: the load of a cloth does not.
 bool springs_are_misplaced(State& s, Team& team) {
@@ -68,7 +68,7 @@ bool springs_are_misplaced(State& s, Team& team) {
     if (largest_way(s.position, s.solved) < tuning::kMisplacedSpeed * kMoment) return false;
   } else {
     s.solved = s.position;
-    s.pins.take_back(s.solved);
+    s.pins.undo_teleports(s.solved);
   }
   return largest_change_of_fast(*s.model, s.position, s.solved) > s.settings.tolerance;
 }
@@ -92,15 +92,15 @@ class Projection {
     if (all_finite(s_.solved)) s_.position = s_.solved;
   }
 
-  /// The load of the fabric before pins were put down pulls as before: its way in the time of a
+  /// The load of the fabric before pins were teleported pulls as before: its way in the time of a
   /// round, from where the pins were, is taken back in each round.
   void put_springs_right() {
     const double softest = softest_of_fast(*s_.model);
-    const bool carries = s_.pins.were_put_down() && !s_.placed;
+    const bool carries = s_.pins.were_teleported() && !s_.placed;
     kernels::Vectors before, drift;
     if (carries) {
       before = s_.position;
-      s_.pins.take_back(before);
+      s_.pins.undo_teleports(before);
     }
     for (const double h : {tuning::kPlacing, tuning::kLongestSubstep}) {
       if (carries) drift = find_drift(before, softest, h);
@@ -108,7 +108,7 @@ class Projection {
       while (left() > 0) {
         solve(softest, h);
         if (!all_finite(s_.solved)) return;
-        if (carries) take_back(drift);
+        if (carries) subtract(drift);
         const double speed = largest_way(s_.position, s_.solved) / h;
         s_.position = s_.solved;
         if (is_wedged()) return;
@@ -127,11 +127,11 @@ class Projection {
     s_.position = std::move(start);
     return drift;
   }
-  void take_back(const kernels::Vectors& drift) {
+  void subtract(const kernels::Vectors& drift) {
     for (std::size_t i = 0; i < drift.size(); ++i) s_.solved.set(i, s_.solved[i] - drift[i]);
   }
-  /// Fabric met itself or a body where no blow stopped it. More of the same would drive it in: what
-  /// is left is for its motion.
+  /// Fabric met itself or a body where no impact stopped it. Further rounds would drive it in, so
+  /// the rest is left to its motion.
   bool is_wedged() {
     if (!has_begun_) return false;
     s_.small_steps->report_bodies(s_.body_report);
@@ -153,7 +153,7 @@ class Projection {
       const PositionTask task{.x = s_.solved.view(),
                               .start = s_.position.view(),
                               .contacts = s_.contacts,
-                              .h = h,
+                              .dt_substep = h,
                               .max_iterations = std::max(1, s_.small_steps ? left() / 2 : left()),
                               .laws = s_.laws ? &*s_.laws : nullptr};
       const auto result = solve_positions(s_, *s_.solver, task, report_, team_);

@@ -1,14 +1,14 @@
 /// Whether a cloth rests, and may sleep.
 ///
 /// It rests if for kRestTime no particle, fixed ones included, has been farther than the share
-/// kRestShare of the mean length of its constraints from where it was when that time began. Its
-/// positions are looked at and not its velocities, and for a time: a particle of the acceleration a
-/// comes a t^2 / 2 away from a turning point. So whatever moves faster than kRestShare of a length
-/// in kRestTime does not rest: a swing of any larger width, creep, and a balance that is being
-/// lost. A balance that is lost more slowly than that is kept.
+/// kRestShare of the mean length of its constraints from where it was when that time began. The
+/// test is about positions over a time, and not about velocities: a particle of the acceleration a
+/// moves by a t^2 / 2 from a turning point. So motions faster than kRestShare of a length in
+/// kRestTime are no rest: larger swings, creep, and cloth that tips over. Cloth that tips over more
+/// slowly than that falls asleep.
 ///
-/// Where a step is longer than a look apart, kRestTime / 4, nothing is known of the time between:
-/// such a cloth does not sleep.
+/// Positions are compared every kRestTime / 4. A cloth whose steps are longer than that does not
+/// sleep, since the motion between is not known.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-/// Which seams of a cloth are closed, and how fast the others close.
+/// The closed seams of a cloth, and the speeds at which others close.
 #pragma once
 
 #include <span>

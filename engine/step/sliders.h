@@ -1,4 +1,4 @@
-/// Where the sliders of a cloth are on their rails (Slider).
+/// The places of a cloth's sliders on their rails (Slider).
 #pragma once
 
 #include <span>

@@ -85,8 +85,9 @@ class Frame {
     spheres_.watch_crossings(team_);
   }
 
-  /// Puts right what the last substep left out of tolerance, in rounds of a sweep and local passes
-  /// that look at all constraints. If rounds no longer bring the error down it is there to stay.
+  /// Corrects the errors that the last substep left out of tolerance, in rounds of a sweep and
+  /// local passes that look at all constraints. If rounds no longer bring the error down it is
+  /// there to stay.
   Status finish() {
     constexpr int kMostVerifications = 4;
     places_.read(team_);
@@ -126,7 +127,7 @@ class Frame {
     finish();
   }
 
-  /// A particle under the surface of a body comes out by and by: no round would bring it out
+  /// A particle under the surface of a body comes out slowly: no round would bring it out
   /// sooner. Returns whether something is deeper than the tolerance.
   bool is_in_body() {
     const double depth = solver_.deepest_in_body(team_);
@@ -235,7 +236,7 @@ class Frame {
   }
   /// The next sweep has the error that a sweep leaves of a law, and small steps bring it down
   /// faster than local passes do: these wait for the last substep, and before it contacts alone are
-  /// put right. Errors of a rigid length would be let go as speed.
+  /// corrected. Errors of a rigid length would turn into speed.
   bool mends_now() const { return !s_.model->has_laws() || places_.left() == 0; }
 
   State& s_;
@@ -286,16 +287,16 @@ void commit(State& s, const Remains& remains, Team& team) {
 }
 
 /// The guard of energy, and what there is to tell.
-Remains end_frame(State& s, Frame& frame, const FramePlan& plan, double h, const Budget& budget,
-                  kernels::ImpulseEnergy& change, Trial& trial) {
+Remains end_frame(State& s, Frame& frame, const FramePlan& plan, double dt_frame,
+                  const Budget& budget, kernels::ImpulseEnergy& change, Trial& trial) {
   Remains remains{give_per_mass(s, plan), takes_over_in(s) ? 0 : s.lost_energy};
   trial.seam_work = s.small_steps->seams().work();
   const double released =
       frame.released() + trial.seam_work + s.body_report.work + s.body_report.untangling;
   if (s.settings.iterations == 0)
-    remains.lost_energy =
-        guard_springs(s, remains.lost_energy, released - std::max(0.0, frame.yielded()), h, change);
-  if (pins_move(s)) trial.pin_work = work_of(motion_of_pins(s, h), s, h);
+    remains.lost_energy = guard_springs(
+        s, remains.lost_energy, released - std::max(0.0, frame.yielded()), dt_frame, change);
+  if (pins_move(s)) trial.pin_work = work_of(motion_of_pins(s, dt_frame), s, dt_frame);
   trial.energy_lost = trial.pin_work + released - 0.5 * change.gain;
   if (!takes_over_in(s)) trial.motion_error = s.small_steps->motion_error();
   if (refines_substeps(s)) {
@@ -309,14 +310,14 @@ Remains end_frame(State& s, Frame& frame, const FramePlan& plan, double h, const
 
 }  // namespace
 
-Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budget,
+Trial small_step(State& s, const Attempt& attempt, double dt_frame, const Budget& budget,
                  StepReport& report, Team& team) {
   const bool fixed = s.settings.iterations > 0;
   Trial trial;
   Frame frame(s, report, team);
   FramePlan plan;
   timed_with_contacts(s, report, Stage::predict, [&] {
-    plan = plan_of_step(s, attempt, h, budget);
+    plan = plan_of_step(s, attempt, dt_frame, budget);
     frame.begin_motion(plan);
   });
   bool is_in_body = false;
@@ -361,15 +362,15 @@ Trial small_step(State& s, const Attempt& attempt, double h, const Budget& budge
     trial.worsen(Status::passed_through);
   }
   timed(report, Stage::commit,
-        [&] { commit(s, end_frame(s, frame, plan, h, budget, change, trial), team); });
+        [&] { commit(s, end_frame(s, frame, plan, dt_frame, budget, change, trial), team); });
   return trial;
 }
 
-void project_by_small_steps(State& s, double softest, double h, bool goes_on, const Budget& budget,
-                            StepReport& report, Team& team) {
+void project_by_small_steps(State& s, double softest, double dt_frame, bool goes_on,
+                            const Budget& budget, StepReport& report, Team& team) {
   timed_with_contacts(s, report, Stage::solve_positions, [&] {
     Frame frame(s, report, team);
-    frame.begin_at_rest(plan_of_projection(s, softest, h, goes_on, budget));
+    frame.begin_at_rest(plan_of_projection(s, softest, dt_frame, goes_on, budget));
     if (softest > 0)
       frame.give_way();
     else
@@ -377,9 +378,9 @@ void project_by_small_steps(State& s, double softest, double h, bool goes_on, co
   });
 }
 
-void look_ahead_by_small_steps(State& s, double h, StepReport& report, Team& team) {
+void look_ahead_by_small_steps(State& s, double dt_frame, StepReport& report, Team& team) {
   Frame frame(s, report, team);
-  frame.begin_at_rest(plan_of_look_ahead(s, h));
+  frame.begin_at_rest(plan_of_look_ahead(s, dt_frame));
   frame.look_ahead();
 }
 

@@ -1,4 +1,4 @@
-/// Where free spheres fly.
+/// The paths of free spheres.
 #pragma once
 
 #include <cstdint>

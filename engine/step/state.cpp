@@ -52,7 +52,7 @@ State::State(std::shared_ptr<const Model> shared, const Settings& chosen)
   if (settings.backend == Backend::reference) predicted.resize(model->slots());
   if (model->damping.motion > 0) velocity_before_decay.resize(model->slots());
   if (model->has_air()) {
-    resistances.resize(model->air.triangles.size());
+    air_coefficients.resize(model->air.triangles.size());
   }
   make_room_for_pressure();
   if (model->constraints.has_springs() && settings.solver != Solver::small_steps) {
@@ -81,7 +81,7 @@ void State::make_room_for_pressure() {
   const auto gives_room = [&](kernels::Vectors& v, bool needed) {
     if ((v.size() > 0) != needed) v.resize(needed ? model->slots() : 0);
   };
-  gives_room(total_force, is_resisted(*model) || has_pressure);
+  gives_room(total_force, has_velocity_forces(*model) || has_pressure);
   gives_room(air_from, model->has_air() || has_pressure);
   gives_room(air_impulse, model->has_air() || has_pressure);
   for (kernels::Vectors* each : {&pressed.beside, &pressed.held, &pressed.before})
@@ -199,9 +199,10 @@ std::size_t State::bytes() const {
     sum += v->bytes();
   }
   sum += contacts.bytes() + nearby.bytes() + coplanar_layers.bytes() + bytes_of(impulses) +
-         bytes_of(inverse_mass_of_met) + bytes_of(resistances) + pins.bytes() + anchors.bytes() +
-         seams.bytes() + sliders.bytes() + creases.bytes() + bodies.bytes() + rest.bytes() +
-         pressed.bytes() + bytes_of(pressures) + bytes_of(gas) + bytes_of(torn) + measure->bytes();
+         bytes_of(inverse_mass_of_met) + bytes_of(air_coefficients) + pins.bytes() +
+         anchors.bytes() + seams.bytes() + sliders.bytes() + creases.bytes() + bodies.bytes() +
+         rest.bytes() + pressed.bytes() + bytes_of(pressures) + bytes_of(gas) + bytes_of(torn) +
+         measure->bytes();
   for (const Pressure& part : pressures) sum += bytes_of(part.triangles);
   if (team_state) sum += sizeof(Team::SharedState);
   if (arena_run) sum += sizeof(ArenaRun);

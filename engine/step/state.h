@@ -47,8 +47,8 @@ class SmallSteps;
 class Sweeps;
 class YarnSolver;
 
-/// The resistance of the air at a corner of a triangle, kg/s (air.h).
-struct Resistance {
+/// Drag and lift at a corner of a triangle, kg/s (air.h).
+struct AirCoefficients {
   double rate = 0;
   kernels::Vector spin{};
 };
@@ -146,8 +146,8 @@ struct State : LastingState {
 
   kernels::Vectors velocity_before_decay;  // for an attempt that is rejected; with decay only
   kernels::Vectors total_force;  // besides gravity (air.h); empty where velocities cause none
-  std::vector<Resistance> resistances;     // per triangle
-  kernels::Vectors air_from, air_impulse;  // of small steps: in a part of a frame, m and N s
+  std::vector<AirCoefficients> air_coefficients;  // per triangle
+  kernels::Vectors air_from, air_impulse;         // of small steps: in a part of a frame, m and N s
   Pressed pressed;
   double air_parts = 1;       // of a frame of small steps, in which the air is looked at (air.h)
   double air_turning = 0;     // 1/s, when the frame begins (AirPace)
@@ -200,7 +200,7 @@ struct State : LastingState {
   /// Goes on from one of another model of the same particles. Particles that the models do not
   /// agree on are at rest if fixed, and have the speed of their last move if free.
   void go_on_from(const State& from);
-  /// Gives `pressed` the room that pressures need, and total_force.
+  /// Gives `pressed` the size that pressures need, and total_force.
   void make_room_for_pressure();
   std::size_t bytes() const;
   /// How many threads a step of it is worth, where Settings::threads allows them.
@@ -211,7 +211,9 @@ struct State : LastingState {
 };
 
 /// Whether velocities cause forces (air.h).
-inline bool is_resisted(const Model& model) { return model.has_air() || model.damping.motion > 0; }
+inline bool has_velocity_forces(const Model& model) {
+  return model.has_air() || model.damping.motion > 0;
+}
 /// Whether triangles feel a pressure (pressure.h).
 inline bool presses(const State& s) { return !s.pressures.empty() || s.model->has_ram(); }
 

@@ -139,7 +139,7 @@ class OneStep {
   }
   /// Walks the list of attempts. Where a part is rejected the next attempt begins; where one is
   /// accepted the list begins again, at the end of that part.
-  bool do_substep(double h, int substeps_left) {
+  bool do_substep(double dt_substep, int substeps_left) {
     positions_ = share_of(report_.iterations, substeps_left);
     velocities_ = share_of(report_.velocity_iterations, substeps_left);
     int begin = 0;  // of the present part, in finest parts
@@ -147,7 +147,7 @@ class OneStep {
       const Attempt& attempt = plan_.attempts[i];
       const int end = attempt.end_of(begin);
       if (end < kFinest || substeps_left > 1) transaction_.move();
-      const Outcome outcome = try_attempt(attempt, h * (end - begin) / kFinest);
+      const Outcome outcome = try_attempt(attempt, dt_substep * (end - begin) / kFinest);
       if (outcome == Outcome::accepted) {
         begin = end;
         i = plan_.first_at(begin);
@@ -155,7 +155,7 @@ class OneStep {
       } else if (!attempt.is_last) {
         ++i;
       } else {
-        timed(report_, Stage::report, [&] { explain(s_, h, report_, team_); });
+        timed(report_, Stage::report, [&] { explain(s_, dt_substep, report_, team_); });
         return false;
       }
     }
@@ -168,18 +168,19 @@ class OneStep {
     return std::max(needed, s_.refinement - tuning::kCoarsening);
   }
 
-  Outcome try_attempt(const Attempt& attempt, double h) {
+  Outcome try_attempt(const Attempt& attempt, double dt_substep) {
     if (!attempt.is_last && report_.iterations >= positions_.early_end) return Outcome::rejected;
     const Budget budget{positions_.left(attempt, report_.iterations),
                         velocities_.left(attempt, report_.velocity_iterations)};
     bool is_predicted = std::exchange(plan_.is_predicted, false) && attempt.parts == 1;
     if (s_.total_force.size() > 0) {
-      timed(report_, Stage::predict, [&] { resist(attempt, h); });
+      timed(report_, Stage::predict, [&] { find_velocity_forces_of(attempt, dt_substep); });
       is_predicted = false;
     }
-    const Trial trial = attempt.method == Method::by_small_steps
-                            ? small_step(s_, attempt, h, budget, report_, team_)
-                            : exact_substep(s_, attempt, h, budget, is_predicted, report_, team_);
+    const Trial trial =
+        attempt.method == Method::by_small_steps
+            ? small_step(s_, attempt, dt_substep, budget, report_, team_)
+            : exact_substep(s_, attempt, dt_substep, budget, is_predicted, report_, team_);
     if (trial.outcome == Outcome::accepted)
       accept(attempt, trial);
     else
@@ -190,29 +191,30 @@ class OneStep {
   bool decays_before(const Attempt& attempt) const {
     return s_.model->damping.motion > 0 && attempt.method != Method::by_small_steps;
   }
-  void resist(const Attempt& attempt, double h) {
+  void find_velocity_forces_of(const Attempt& attempt, double dt_substep) {
     const bool decays = decays_before(attempt);
     if (attempt.method == Method::by_small_steps) {
       const AirPace air = find_air_pace(s_);
-      s_.air_parts = parts_for_air(air, h);
+      s_.air_parts = parts_for_air(air, dt_substep);
       s_.air_turning = air.turning;
-      const double part = h / s_.air_parts;
-      return find_forces(0, s_.model->has_ram() ? std::max(part, least_held(h)) : part);
+      const double part = dt_substep / s_.air_parts;
+      return find_forces(0, s_.model->has_ram() ? std::max(part, least_held(dt_substep)) : part);
     }
-    find_forces(decays ? s_.model->damping.motion : 0, h);
+    find_forces(decays ? s_.model->damping.motion : 0, dt_substep);
     if (!decays) return;
     s_.velocity_before_decay = s_.velocity;
-    decay(s_, h);
+    decay(s_, dt_substep);
   }
 
-  /// s, of a frame h: how long the air is held at least.
-  double least_held(double h) const {
+  /// s, how long the force of the air is held at least in a frame of small steps.
+  double least_held(double dt_frame) const {
     const int substeps = s_.settings.substeps;
-    return substeps == kAutomaticSubsteps ? std::min(h, tuning::kLongestSubstep) : h / substeps;
+    return substeps == kAutomaticSubsteps ? std::min(dt_frame, tuning::kLongestSubstep)
+                                          : dt_frame / substeps;
   }
-  /// See find_resistance.
-  void find_forces(double decay, double h) {
-    find_resistance(s_, decay, h, team_);
+  /// See find_velocity_forces.
+  void find_forces(double decay, double dt_substep) {
+    find_velocity_forces(s_, decay, dt_substep, team_);
     if (!presses(s_)) return;
     s_.pressed.beside = s_.total_force;
     begin_pressing(s_);
@@ -308,8 +310,8 @@ void fall_asleep(State& s, StepReport& report) {
               .law_error = report.law_error};
 }
 
-/// J. Where bodies overlap, and wherever else a step misses its tolerance, they push particles to
-/// and fro. Their slip is no motion then, and counts as far as energy was lost.
+/// J. Where bodies overlap, and wherever else a step misses its tolerance, contacts shake
+/// particles. Their slip is no motion then, and counts as far as energy was lost.
 double friction_work(const StepReport& report, double counted) {
   if (report.status == Status::converged) return counted;
   return std::min(counted, std::max(0.0, report.energy_lost));

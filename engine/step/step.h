@@ -1,8 +1,8 @@
 /// One time step: estimate, try, measure, accept or reject. step.cpp is the whole of it, from top
-/// to bottom; what it calls are
+/// to bottom. Its parts are
 ///
 ///   plan           how many substeps, and the ordered list of attempts at each
-///   air            forces that depend on velocities, found once for each h
+///   air            forces that depend on velocities, found once per attempt
 ///   project        a start that violates the constraints
 ///   exact_substep  one substep by a prediction and a solver of constraints
 ///   small_step     a step, or a substep that solvers gave up, by small steps
@@ -10,7 +10,7 @@
 ///   pins, anchors  fixed particles and points of anchors that are moved
 ///   pin_work       the work that they do
 ///   rest           whether a cloth rests, and sleeps
-///   tearing        what breaks when the step ends
+///   tearing        breaks at the end of the step
 #pragma once
 
 #include <weft/weft.h>

@@ -1,4 +1,4 @@
-/// One time step of one cloth, by as many threads of a job system as it is worth.
+/// One time step of one cloth, by as many threads of a job system as are worthwhile.
 #pragma once
 
 #include <weft/weft.h>

@@ -1,4 +1,4 @@
-/// Settings that are refused, and how it is said: in one line of the form "field: reason (value)".
+/// Refuses settings, in one line of the form "field: reason (value)".
 #pragma once
 
 #include <weft/jobs.h>

@@ -1,4 +1,4 @@
-/// A mesh as it is drawn: its triangles by vertex, and what normals are made of.
+/// A mesh as it is drawn: its triangles by vertex, and the data of its normals.
 #pragma once
 
 #include <weft/mesh.h>

@@ -1,4 +1,5 @@
-/// Points that follow the triangles of a cloth: where they lie in one, and how far off it.
+/// Points that follow the triangles of a cloth, by their place in a triangle and their distance to
+/// it.
 #pragma once
 
 #include <weft/scene.h>

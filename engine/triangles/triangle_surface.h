@@ -1,4 +1,4 @@
-/// The topology of a surface of triangles: its edges, and who belongs to whom.
+/// The topology of a surface of triangles: its edges, and how they belong together.
 ///
 /// Each edge and each point is owned by one triangle. Two features of two surfaces are near to each
 /// other only if their owners are: so pairs of triangles name each pair of features once.

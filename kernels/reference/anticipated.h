@@ -10,8 +10,8 @@
 /// (The paper prints e_j + n_j . n_i e_i, which lacks s and w_p / (w_a + w_b).) For plain
 /// constraints s w_p (n_j . n_c) is computed once, when c is first corrected along its present
 /// direction. The others (hubs, ropes, contacts) are few: their products are formed on the spot. At
-/// a hub nobody is told: its motion is kept, and its constraints add n . (motion) to their own
-/// error when visited.
+/// a hub no product is formed: its motion is kept, and its constraints add n . (motion) to their
+/// own error when visited.
 ///
 /// Skipping. Constraints stand colour by colour, so those of a block (at most kBlock of one colour)
 /// do not touch each other: which of them are out of tolerance is decided for the whole block at
@@ -21,7 +21,8 @@
 /// slower: 4.8 ns per constraint and iteration, 3.9 if a push sets it without comparing,
 /// against 2.8 without any (hang, 20 x 20, 0.001 %, where half of all visits correct).
 ///
-/// A spring's own correction lambda changes its error by softness lambda as well; nobody else's.
+/// A spring's own correction lambda changes its error by softness lambda as well, and no other
+/// error.
 ///
 /// Positions stay as they are until the next renewal; impulses wait in `pending` (paper: p').
 #pragma once

@@ -95,8 +95,8 @@ inline double reach_of(const BendingElement& e) {
   return sum;
 }
 
-/// How d has changed since the substep began, for one who turns with the element: the damping of an
-/// element is about what it bends, and cloth that spins keeps its spin. The direction of d says
+/// The change of d since the substep began, in a frame that turns with the element: damping acts on
+/// bending alone, and cloth that spins keeps its spin. The direction of d says
 /// nothing of a fine cell, where most of d is what sweeps have left: there the arms tell how it
 /// turns. In a sharp fold they say nothing, since the arm along it has all but vanished, and a
 /// force that follows it feeds the fold: there d does. Each counts by its length squared.

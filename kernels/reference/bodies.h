@@ -211,16 +211,16 @@ inline Vector kept_out(const BodyMotion& body, Vector start, Vector by, double r
   return by + std::max(0.0, std::min(0.0, from.gap) - to.gap) * body.from.turned(to.normal);
 }
 
-inline constexpr double kPressed = 1e6;  // over what a body yields: more than any pull
+inline constexpr double kPressed = 1e6;  // over a thinning: more than any pull
 
-/// How much of its distance a body gives up where another one leaves no room for it
-/// (engine/contact/room.h). m: at the end of the substep, and what of it is new, since both bodies
-/// close on each other.
-struct Yield {
+/// By how much a body is treated as thinner where the gap to another one is narrow
+/// (engine/contact/thickness_shares.h). m: at the end of the substep, and the part that is new
+/// since both bodies close on each other.
+struct Thinning {
   double by = 0, retreat = 0;
 
-  /// m, by which the other body presses for the sake of friction: what has no room between solid
-  /// bodies is held by any friction.
+  /// m, by which the other body presses for the sake of friction: any friction holds cloth that is
+  /// clamped between two solid bodies.
   double presses() const { return kPressed * by; }
 };
 
@@ -229,11 +229,11 @@ struct Grip {
   double pushed = 0, held = 0;     // m: along the normal, without what came out, and by friction
   double stopped = 0, slowed = 0;  // m/s, likewise
   double came_out = 0;             // m, along the normal: the rest of the pushes
-  Yield yield{};
+  Thinning thinning{};
 };
 
 /// How a point of the cloth and the surface under it have come together in a substep.
-struct Encounter {
+struct PointContact {
   Vector normal{};  // out of the body
   double gap = 0;   // m, at the end; negative: under the surface
   Vector slip{};    // m, of the point beside the material of the body
@@ -256,16 +256,16 @@ inline double held_share(double along, double may, double& held) {
   return share;
 }
 
-/// The answer of a contact to an encounter.
+/// The correction of a position by a contact.
 struct Stop {
   double push = 0;       // m, along the normal; 0: nothing touches
   double comes_out = 0;  // m of it, that were deeper when the substep began
   double slid = 0;       // m, along the surface, that friction has left
   Vector by{};           // m, of the point, altogether
 };
-inline Stop stop(const Encounter& e, double friction, double h, Grip& done) {
-  const double toward = -dot(e.normal, e.slip), gap = e.gap + done.yield.by;
-  const double approach = toward - done.yield.retreat, began = gap + approach - done.came_out;
+inline Stop stop(const PointContact& e, double friction, double h, Grip& done) {
+  const double toward = -dot(e.normal, e.slip), gap = e.gap + done.thinning.by;
+  const double approach = toward - done.thinning.retreat, began = gap + approach - done.came_out;
   const double recovers = h * std::min(kFastestRecovery, kRecovery - began / kRecoveryTime);
   const double target = std::min(0.0, began < 0 ? began + recovers : 0.0);
   const double push = target - gap;
@@ -275,21 +275,21 @@ inline Stop stop(const Encounter& e, double friction, double h, Grip& done) {
   done.came_out += push - stays_out;
   const Vector along = e.slip + toward * e.normal;
   const double l = length(along);
-  const double held = held_share(l, friction * (done.pushed + done.yield.presses()), done.held);
+  const double held = held_share(l, friction * (done.pushed + done.thinning.presses()), done.held);
   return {push, push - stays_out, (1 - held) * l, push * e.normal - held * along};
 }
 
-/// Its answer to the velocity of the point beside the surface.
+/// The correction of the velocity of the point relative to the surface.
 struct Slowed {
   Vector change{};   // m/s
   double taken = 0;  // m/s, along the surface
 };
 inline Slowed slow(Vector normal, Vector relative, double friction, double h, Grip& done) {
-  const double into = std::max(0.0, -dot(normal, relative) - done.yield.retreat / h);
+  const double into = std::max(0.0, -dot(normal, relative) - done.thinning.retreat / h);
   done.stopped += into;
   const Vector sliding = relative - dot(normal, relative) * normal;
   const double l = length(sliding);
-  const double may = friction * (done.stopped + done.yield.presses() / h);
+  const double may = friction * (done.stopped + done.thinning.presses() / h);
   const double slowed = held_share(l, may, done.slowed);
   return {into * normal - slowed * sliding, slowed * l};
 }
@@ -320,7 +320,7 @@ inline Gripped follow(const BodyMotion& body, const Touch& touch, Vector start, 
                       Grip& done) {
   Gripped gripped = grip(body, touch, start, x, v, done);
   if (gripped.is_touching) return gripped;
-  const double back = std::min(touch.gap + done.yield.by, done.pushed);
+  const double back = std::min(touch.gap + done.thinning.by, done.pushed);
   if (!(back > 0)) return gripped;
   const double apart = dot(touch.normal, v - body.velocity_at(x)),
                faster = std::clamp(apart, 0.0, done.stopped);

@@ -103,7 +103,7 @@ inline double impulse_change(const Relaxation& r, std::size_t c, double e, doubl
   return std::min(change, -impulse);
 }
 
-/// Adds to the accumulated impulse of a bilateral constraint, where somebody reads it.
+/// Adds to the accumulated impulse of a bilateral constraint, where it is read.
 inline void accumulate(const Relaxation& r, std::size_t c, double change) {
   if (r.softness != nullptr) r.impulse[c] += change;
 }

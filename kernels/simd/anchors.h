@@ -1,7 +1,7 @@
 /// Anchors in lanes: reference::hold (kernels/reference/anchors.h), which has the formulas.
 ///
 /// A block is kLanes particles that stand in a row of memory, in quads or in a woven row; those
-/// without an anchor have no limit. So nothing is gathered, and blocks in which nobody is at its
+/// without an anchor have no limit. So nothing is gathered, and blocks without a particle at its
 /// limit, most of them, are read and left.
 #pragma once
 

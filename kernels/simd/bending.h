@@ -8,7 +8,7 @@
 ///     f = - k ((1 - rest / |d|) d + damping bent),
 ///
 /// or that of a hinge which is folded at rest (kernels/reference/bending.h),
-/// where bent is how d has changed since the start of the substep for one who turns with the
+/// where bent is the change of d since the start of the substep in a frame that turns with the
 /// element, as its arms tell (kernels/reference/bending.h). Rounding of d makes a moment, and of a
 /// sum of pulls no more than of these: it does not push a stiff cloth away.
 #pragma once
@@ -133,7 +133,7 @@ template <bool kFour>
   return Floats(0.5f) * (sizes + xsimd::abs(others));
 }
 
-/// How d has changed, by `by` in space, for one who turns with the element. at: by how much
+/// The change of d, `by` in space, in a frame that turns with the element. at: by how much
 /// particles have moved since the base, moved: since the start of the substep.
 template <bool kFour>
 [[gnu::always_inline]] inline FloatVector bent(const Bending& b, std::size_t block,

@@ -154,9 +154,9 @@ template <class At>
       p.near = p.near && !is_quick;
     }
     if (bits(p.near) == 0) continue;
-    const Floats yields_by = load(grips.yields_by + lane), retreat = load(grips.retreat + lane);
+    const Floats thinned_by = load(grips.thinned_by + lane), retreat = load(grips.retreat + lane);
     const Floats toward = none - dot(p.normal, p.slip), approach = toward - retreat;
-    p.gap = p.gap + yields_by;
+    p.gap = p.gap + thinned_by;
     const Floats came_out = load(grips.came_out + lane);
     const Floats push = push_of(p, approach, came_out, h.h);
     const FloatMask on = push > none;
@@ -165,7 +165,7 @@ template <class At>
     const Floats pushed = load(grips.pushed + lane) + stays_out;
     Floats held = load(grips.held + lane);
     FloatVector along = fused(toward, p.normal, p.slip);
-    const Floats presses = Floats(static_cast<float>(reference::kPressed)) * yields_by;
+    const Floats presses = Floats(static_cast<float>(reference::kPressed)) * thinned_by;
     const Floats most_held = Floats(f.friction) * (pushed + presses);
     const Floats share = held_share(xsimd::sqrt(dot(along, along)), most_held, held);
     FloatVector by = fused_from(share, along, push * p.normal);

@@ -12,8 +12,8 @@
 namespace weft::simd {
 
 /// kLanes contacts of one kind, a point and a triangle or two edges. No point is in two of them.
-/// Points are numbered as quads of places and moves are. Lanes that are not used have a point that
-/// nobody else has.
+/// Points are numbered as quads of places and moves are. A lane that is not used has a point of its
+/// own.
 struct alignas(64) ContactBlock {
   std::uint32_t point[4][kernels::kLanes];
   /// Third corners of the faces beside a feature. For edges: those of both faces of the first edge,

@@ -68,7 +68,7 @@ struct alignas(64) BodyGrips {
   float pushed[kernels::kLanes], held[kernels::kLanes];
   float stopped[kernels::kLanes], slowed[kernels::kLanes];
   float came_out[kernels::kLanes];
-  float yields_by[kernels::kLanes], retreat[kernels::kLanes];
+  float thinned_by[kernels::kLanes], retreat[kernels::kLanes];
   LaneVectors linear, angular;
   float friction[kernels::kLanes];
 };

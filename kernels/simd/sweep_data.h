@@ -61,11 +61,11 @@ struct alignas(64) ConstraintBlock {
 struct BlockRelaxation {
   Displacements u;
   ConstraintBlock* blocks = nullptr;
-  float* impulse = nullptr;          // ropes, contacts: sum of corrections, >= 0 and <= 0;
-                                     // springs: since directions were renewed
-  const float* yield = nullptr;      // springs (relax_springs.h), per constraint
-  const float* held = nullptr;       // springs: sum of corrections before that
-  const std::uint32_t* a = nullptr;  // constraint -> slot, for singles
+  float* impulse = nullptr;                 // ropes, contacts: sum of corrections, >= 0 and <= 0;
+                                            // springs: since directions were renewed
+  const float* compliance_share = nullptr;  // springs (relax_springs.h), per constraint
+  const float* held = nullptr;              // springs: sum of corrections before that
+  const std::uint32_t* a = nullptr;         // constraint -> slot, for singles
   const std::uint32_t* b = nullptr;
   std::uint64_t* mask = nullptr;  // skipping by masks: per slot, bit = colour
   float threshold = 1;            // 0: correct whatever the error

@@ -27,7 +27,7 @@ struct alignas(64) YarnSpringRow {
 /// Sets joined and square of a block's rows from rest and inverse_mass.
 void derive_joints(std::span<YarnRow> rows);
 
-/// Room for what kernels have of a row besides (yarn_arrays.h): in the linear system, in the
+/// Space for further values of a row (yarn_arrays.h): in the linear system, in the
 /// scratch of a sweep, of scheme rattle's directions, and of the base.
 struct alignas(64) YarnSystemRow {
   float floats[10 * kernels::kLanes];
@@ -44,12 +44,12 @@ struct alignas(64) YarnBaseSteps {
 
 inline constexpr std::size_t kRowFloats = 3 * kernels::kLanes;  // of the woven layout
 
-/// Rows of a block whose lanes stand in kLanes rows of memory, a column each (yarn_places.h); what
-/// else is in these is nobody's. Or a single row whose particles stand anywhere.
+/// Rows of a block whose lanes stand in kLanes rows of memory, a column each (yarn_places.h); other
+/// places in these are unused. Or a single row whose particles stand anywhere.
 struct YarnPatch {
   std::uint32_t place[kernels::kLanes];  // per lane: of its row of memory; single: of its particle
-  std::uint32_t row[kernels::kLanes];    // per column: of the block; nobody's: behind the last
-  std::uint32_t columns = 0;             // behind these all are nobody's
+  std::uint32_t row[kernels::kLanes];    // per column: of the block; unused: behind the last
+  std::uint32_t columns = 0;             // behind these all are unused
   bool single = false;                   // row[0]
 };
 
@@ -67,7 +67,7 @@ struct YarnBlock {
 };
 
 /// A row of the woven layout, | x ... x | y ... y | z ... z |. Each four of its lanes are slots in
-/// a row, of which the first `count` are its own; the other lanes are nobody's.
+/// a row, of which the first `count` are its own; the other lanes are unused.
 struct WovenRow {
   static constexpr std::uint32_t kFours = kernels::kLanes / 4;
   std::uint32_t place = 0;

@@ -19,7 +19,7 @@ class StandingParticles final : public ContactParticles {
   void touch(std::uint32_t, const TouchedSurface&) override {}
   bool is_on_body(std::uint32_t) const override { return false; }
   void stop(std::uint32_t, const TouchedSurface&) override {}
-  void jolt(std::uint32_t, kernels::Vector) override {}
+  void jump_velocity(std::uint32_t, kernels::Vector) override {}
   void push(std::uint32_t, kernels::Vector, kernels::Vector) override {}
   bool is_beside_body(std::uint32_t) const override { return false; }
   void move_beside_bodies(std::uint32_t, kernels::Vector) override {}

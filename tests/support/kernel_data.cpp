@@ -62,7 +62,7 @@ KernelData::KernelData(std::uint32_t length, std::uint32_t seed)
     block.gain_a[k] = to_float(-random.between(0, 1) * tau * tau);
     block.gain_b[k] = to_float(random.between(0, 1) * tau * tau);
     impulse.push_back(to_float(random.between(0, 1)));
-    yield.push_back(c % 3 == 0 ? 0 : to_float(0.1 * (c % 10)));
+    compliance_share.push_back(c % 3 == 0 ? 0 : to_float(0.1 * (c % 10)));
     held.push_back(to_float(0.2 * (c % 7)));
     rest_length.push_back(random.between(0.5, 2));
     inverse_square.push_back(1 / (rest_length[c] * rest_length[c]));
@@ -95,7 +95,7 @@ simd::BlockRelaxation KernelData::relaxation(float threshold) {
   r.u = {u.data(), stride(), 1};
   r.blocks = blocks.data();
   r.impulse = impulse.data();
-  r.yield = yield.data();
+  r.compliance_share = compliance_share.data();
   r.held = held.data();
   r.a = a.data();
   r.b = b.data();

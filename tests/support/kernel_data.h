@@ -44,8 +44,9 @@ struct KernelData {
   std::size_t slots;
   kernels::Vectors position, velocity, force, solved, next_velocity;
   kernels::AlignedVector<double> inverse_mass, mass, rest_length, inverse_square, scale, reach;
-  kernels::AlignedVector<float> u, impulse;   // u: planar
-  kernels::AlignedVector<float> yield, held;  // of springs; every third constraint is none
+  kernels::AlignedVector<float> u, impulse;  // u: planar
+  kernels::AlignedVector<float> compliance_share,
+      held;  // of springs; every third constraint is none
   kernels::AlignedVector<simd::ConstraintBlock> blocks;
   std::vector<std::uint32_t> a, b;  // of the singles
   std::vector<std::uint64_t> mask;

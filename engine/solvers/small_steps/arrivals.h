@@ -1,5 +1,5 @@
-/// Particles whose motion a body, the limit of an anchor or a rope ended in a substep: they go on
-/// at first order.
+/// Particles that a body, the limit of an anchor or a rope has stopped in a substep: they go on at
+/// first order.
 #pragma once
 
 #include <algorithm>
@@ -18,24 +18,26 @@ struct Arrival {
   TouchedSurface surface{};  // of no body: an anchor's limit, or a rope
 };
 
-/// A change of velocity in a moment, by other particles of the cloth.
-struct Jolt {
+/// A jump of a particle's velocity, by other particles of the cloth.
+struct VelocityJump {
   std::uint32_t slot = 0;
   kernels::Vector by{};
 };
 
-/// Visits each particle with the sum of its jolts, and empties the list.
+/// Visits each particle with the sum of its velocity_jumps, and empties the list.
 template <class Visit>
-void take_jolts(std::vector<Jolt>& jolts, Visit&& visit) {
-  std::ranges::sort(jolts, {}, [](const Jolt& jolt) {  // so that sums depend on no other order
-    return std::tuple(jolt.slot, jolt.by.x, jolt.by.y, jolt.by.z);
-  });
-  for (std::size_t i = 0; i < jolts.size();) {
-    Jolt sum = jolts[i];
-    for (++i; i < jolts.size() && jolts[i].slot == sum.slot; ++i) sum.by = sum.by + jolts[i].by;
+void take_velocity_jumps(std::vector<VelocityJump>& velocity_jumps, Visit&& visit) {
+  std::ranges::sort(velocity_jumps, {},
+                    [](const VelocityJump& jump) {  // so that sums depend on no other order
+                      return std::tuple(jump.slot, jump.by.x, jump.by.y, jump.by.z);
+                    });
+  for (std::size_t i = 0; i < velocity_jumps.size();) {
+    VelocityJump sum = velocity_jumps[i];
+    for (++i; i < velocity_jumps.size() && velocity_jumps[i].slot == sum.slot; ++i)
+      sum.by = sum.by + velocity_jumps[i].by;
     visit(sum);
   }
-  jolts.clear();
+  velocity_jumps.clear();
 }
 
 /// Visits the first arrival of each particle, those at bodies first, and empties the list.

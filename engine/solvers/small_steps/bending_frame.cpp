@@ -22,7 +22,7 @@ BendingFrame::BendingFrame(const Model& model, const Settings& settings)
 
 int BendingFrame::longest_group(const FramePlan& plan) const {
   if (is_timed_) return 1;
-  const double most = std::sqrt(tuning::kBendingGroup / rows_.stiffest) / plan.h;
+  const double most = std::sqrt(tuning::kBendingGroup / rows_.stiffest) / plan.dt_substep;
   const int longest = std::min(tuning::kLongestGroup, plan.substeps);
   return std::max(1, static_cast<int>(std::min<double>(most, longest)));
 }
@@ -30,14 +30,15 @@ int BendingFrame::longest_group(const FramePlan& plan) const {
 void BendingFrame::begin(const FramePlan& plan, double weight) {
   if (rows_.empty()) return;
   const SubstepFormula formula =
-      SubstepFormula::of(scheme_, 1).with_decay(model_.damping.motion, plan.h, plan.h);
-  give_ = formula.give(plan.h);
+      SubstepFormula::of(scheme_, 1)
+          .with_decay(model_.damping.motion, plan.dt_substep, plan.dt_substep);
+  give_ = formula.give(plan.dt_substep);
   omega_ = plan.omega;
   substeps_ = plan.substeps;
   done_ = 0;
   longest_ = longest_group(plan);
   groups_ = (substeps_ - 1) / longest_ + 1;
-  damping_ = model_.damping.bending / plan.h;
+  damping_ = model_.damping.bending / plan.dt_substep;
   weight_ = 0;
   is_factored_ = is_to_be_factored();
   if (is_factored_) return;

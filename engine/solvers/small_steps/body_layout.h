@@ -1,4 +1,4 @@
-/// Which particles stand side by side in memory, where bodies may touch them.
+/// Groups of particles side by side in memory, for contacts with bodies.
 #pragma once
 
 #include <cstdint>

@@ -2,8 +2,8 @@
 ///
 /// The multiplier of a law after the sweep of a substep is the impulse that moved the particles.
 /// Mending is left out: it moves positions and no velocities. In a cloth at rest these impulses
-/// balance the load in each substep, however stiff the laws are. So the mean is the force, exact
-/// for what a load stretches. Where pins stretch a fabric that is stiffer than substeps resolve, it
+/// balance the load in each substep, however stiff the laws are. So the mean is the force, and
+/// exact under a load. Where pins stretch a fabric that is stiffer than substeps resolve, it
 /// is the force of the fabric as it is solved, which is softer (tests/README.md).
 #pragma once
 

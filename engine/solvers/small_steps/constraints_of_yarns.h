@@ -1,4 +1,4 @@
-/// Which constraints small steps solve along yarns. All others are blocks of their own.
+/// The constraints that small steps solve along yarns. All others are blocks of their own.
 ///
 /// A yarn pays where it carries a load that single constraints would pass on one by one. So chains
 /// of few links are left out, and so are springs that others relieve: across the yarns of a woven

@@ -1,17 +1,16 @@
-/// Hinges that yield (BendingElement in weft/scene.h), in small steps: at the end of each substep
-/// that bending was solved in (bending_frame.h) the rest of a hinge that is bent too far follows
-/// it, on either backend alike. Positions stay, so the energy of bending falls by what was lost;
-/// and the law between two such moments is that of folds at rest, which a substep solves as it does
-/// others.
+/// Hinges that yield (BendingElement in weft/scene.h), in small steps. At the end of each substep
+/// in which bending was solved (bending_frame.h) the rest angle of a hinge that is bent too far
+/// follows it, on either backend alike. Positions stay, so the energy of bending falls. Between two
+/// such moments the law is that of folds at rest, which a substep solves as it does others.
 ///
 /// Elements that meet at an edge's end yield together: each knows only the part of the curvature
 /// that is across its edge, and all of them store
 ///
 ///     k / 2 (Kxx^2 + Kyy^2 + 2 Kxy^2)     per area, of the stiffness k and the curvature K
 ///
-/// as a material does. So cloth yields at one curvature, in whatever direction it is bent, and the
-/// rest of K is taken down by one factor: the return to the yield surface is along the radius (Simo
-/// and Hughes, "Computational Inelasticity", 1998).
+/// as a material does. So cloth yields at the same curvature in all directions, and all of K is
+/// scaled by one factor: the return to the yield surface is radial (Simo and Hughes, "Computational
+/// Inelasticity", 1998).
 #pragma once
 
 #include <algorithm>

@@ -1,9 +1,9 @@
-/// The length of a substep that hinges which are folded at rest bear (kernels/reference/bending.h).
+/// The length of a substep for hinges that are folded at rest (kernels/reference/bending.h).
 ///
-/// The matrix of bending knows how stiff d is, and not that the normal turns with the faces. Where
-/// a substep does not resolve the swing of the hinge, of the angular frequency w, its solution
-/// unfolds it along a chord, by which the faces become longer, and the sweep after it turns them
-/// back. The sharper the fold is at rest, the more of that is along the faces. So
+/// The matrix of bending has the stiffness of d, and does not know that the normal turns with the
+/// faces. If a substep does not resolve the swing of the hinge, of the angular frequency w, its
+/// solution unfolds the hinge along a chord: the faces become longer, and the sweep after it turns
+/// them back. The sharper the fold is at rest, the larger is this motion along the faces. So
 ///
 ///     h = kFoldTurn / (w s^2),
 ///

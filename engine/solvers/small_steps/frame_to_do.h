@@ -14,12 +14,12 @@ namespace weft {
 
 /// The plan of a frame (engine/step/frame_plan.h makes it).
 struct FramePlan {
-  double h = 0;  // s, of a substep
+  double dt_substep = 0;  // s, of a substep
   int substeps = 1;
   double passes = 0;    // at most, beyond a sweep for each substep, in the time of sweeps
   double omega = 1;     // of a sweep
   bool placed = false;  // positions are not where the last step ended: nothing is known of a past
-  // m/N. A start is put right (engine/step/project.h) and the past is kept: springs that are softer
+  // m/N. A start is projected (engine/step/project.h) and the past is kept: springs that are softer
   // are left as they are.
   std::optional<double> softest{};
   AnchorTravel anchors{};

@@ -15,7 +15,7 @@ void FreeBodies::begin(std::span<const FreeBody> bodies, const FreeFrame& frame)
   frame_ = frame;
   substeps_left_ = frame.substeps;
   substeps_to_search_ = 0;
-  h_before_ = frame.has_past ? frame.past_h : frame.h;
+  dt_before_ = frame.has_past ? frame.dt_of_past : frame.dt_substep;
   friction_ = 0;
   is_under_way_ = false;
   is_first_search_ = true;
@@ -33,7 +33,7 @@ void FreeBodies::begin_course(std::size_t body) {
   const FreePast& past = motion.past;
   courses_.push_back({.inertia = BodyInertia(b.mass)});
   Course& course = courses_.back();
-  const double h = h_before_;
+  const double h = dt_before_;
   const Vector accelerates = frame_.gravity + (1 / b.mass.mass) * b.force;
   const Vector spin = course.inertia.spin(motion.rotation, motion.momentum);
   if (frame_.has_past && past.is_known) {
@@ -66,7 +66,8 @@ void FreeBodies::begin_course(std::size_t body) {
                 .spin = frame_.stands ? Vector{} : spin,
                 .thickness = b.thickness,
                 .friction = frame_.stands ? 0 : b.friction,
-                .h = frame_.stands ? tuning::kAtOnce : frame_.h};
+                .h = frame_.stands ? std::numeric_limits<double>::infinity() : frame_.dt_substep};
+  now.dt_substep = frame_.dt_substep;
   if (!frame_.stands) now.inverse_inertia = course.inertia.turned_inverse(motion.rotation);
   if (frame_.stands) {
     course.start = motion.centre;
@@ -109,14 +110,15 @@ double FreeBodies::energy(std::size_t body) const {
 double FreeBodies::way_of(std::size_t body) const {
   const reference::BodyMotion& motion = now_[body].motion;
   if (frame_.stands) return 0;
-  return frame_.h * (length(motion.velocity) + length(motion.spin) * courses_[body].reach);
+  return frame_.dt_substep * (length(motion.velocity) + length(motion.spin) * courses_[body].reach);
 }
 
 /// The friction of the last substep, and the work of moments in it.
 void FreeBodies::end_substep() {
   if (!std::exchange(is_under_way_, false)) return;
   for (const FreeContact& contact : contacts_)
-    friction_ += share_of_momentum_ * length(contact.slow) * length(contact.slides) / frame_.h;
+    friction_ +=
+        share_of_momentum_ * length(contact.slow) * length(contact.slides) / frame_.dt_substep;
   for (std::size_t body = 0; body < bodies_.size(); ++body) {
     const Rotation turn = product(bodies_[body].motion.rotation, inverse(courses_[body].from));
     courses_[body].work += dot(bodies_[body].moment, turn_of(turn));
@@ -126,7 +128,7 @@ void FreeBodies::end_substep() {
 void FreeBodies::advance(const SubstepFormula& formula) {
   end_substep();
   is_under_way_ = true;
-  const double h = frame_.h, bh = formula.part * h;
+  const double h = frame_.dt_substep, bh = formula.part * h;
   share_of_momentum_ = 1 / formula.part;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const FreeBody& body = bodies_[i];
@@ -143,7 +145,7 @@ void FreeBodies::advance(const SubstepFormula& formula) {
     const Vector centre =
         motion.centre + formula.past * (motion.centre - course.start) + bh * velocity;
     const Vector turned = turn_of(product(motion.rotation, inverse(course.from)));
-    const Rotation flown_from = inertia.flight(motion.rotation, motion.momentum, -h_before_);
+    const Rotation flown_from = inertia.flight(motion.rotation, motion.momentum, -dt_before_);
     const Vector flown = turn_of(product(motion.rotation, inverse(flown_from)));
     const Vector beyond = formula.past * (turned - flown) +
                           bh * inertia.spin(motion.rotation, momentum - motion.momentum);
@@ -162,14 +164,14 @@ void FreeBodies::advance(const SubstepFormula& formula) {
     for (double& each : now_[i].inverse_inertia.of) each /= formula.share;
     place(i);
   }
-  h_before_ = h;
+  dt_before_ = h;
   for (FreeContact& contact : contacts_) contact.begin_substep();
   substeps_to_search_ = std::max(0, substeps_to_search_ - 1);
   --substeps_left_;
 }
 
 void FreeBodies::begin_search() {
-  const double substeps = std::max(1.0, std::floor(tuning::kContactInterval / frame_.h));
+  const double substeps = std::max(1.0, std::floor(tuning::kContactInterval / frame_.dt_substep));
   substeps_to_search_ = static_cast<int>(std::min<double>(substeps, substeps_left_ + 1));
   found_.clear();
 }

@@ -2,12 +2,12 @@
 ///
 /// A body is a particle that turns: its velocity and its angular momentum go on by the formula of
 /// the particles (substep_formula.h), and so does its centre. Its rotation is that of free flight,
-/// found exactly, and what forces and contacts have added to it goes on by the formula. So a body
-/// that flies keeps its momentum and its energy, and one that lies on cloth is in step with it:
-/// what the two do to each other cancels in every substep.
+/// found exactly, and additions by forces and contacts go on by the formula. So a body in flight
+/// keeps its momentum and its energy, and one that lies on cloth is in step with it: their impulses
+/// on each other cancel in every substep.
 ///
-/// A particle that arrives at a body goes on at first order, as at any other body. The past of
-/// the body becomes poorer by as much as its own becomes richer. free_contacts.h has the contacts.
+/// A particle that arrives at a body goes on at first order, as at any other body. The past of the
+/// body loses the momentum that the past of the particle gains. free_contacts.h has the contacts.
 #pragma once
 
 #include <cstdint>
@@ -27,9 +27,9 @@ namespace weft {
 
 /// The beginning of a frame of bodies.
 struct FreeFrame {
-  double h = 0, past_h = 0;  // s, of substeps; of the last one of the frame before
+  double dt_substep = 0, dt_of_past = 0;  // s, of substeps; of the last one of the frame before
   int substeps = 1;
-  bool stands = false;    // positions are put right
+  bool stands = false;    // positions are projected
   bool has_past = false;  // that of the bodies counts
   kernels::Vector gravity{};
 };
@@ -114,7 +114,7 @@ class FreeBodies {
 
   const Model& model_;
   FreeFrame frame_;
-  double h_before_ = 0, share_of_momentum_ = 1;
+  double dt_before_ = 0, share_of_momentum_ = 1;
   int substeps_left_ = 0, substeps_to_search_ = 0;
   bool is_under_way_ = false;     // a substep has begun and was not ended
   bool is_first_search_ = false;  // of the frame

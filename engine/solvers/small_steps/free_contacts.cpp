@@ -107,7 +107,7 @@ double FreeContactSweep::visit(Row& row, std::span<FreeBodyNow> bodies) {
   const double stops = row.push > 0 ? -speed / row.give : std::min(0.0, -speed / row.give);
   const double stop_to = std::max(0.0, row.stop + stops);
   stop(row, body, (stop_to - row.stop) * n);
-  changed += body.motion.h * row.give * std::abs(stop_to - row.stop);
+  changed += body.dt_substep * row.give * std::abs(stop_to - row.stop);
   row.stop = stop_to;
 
   if (friction == 0) return changed;
@@ -126,7 +126,7 @@ double FreeContactSweep::visit(Row& row, std::span<FreeBodyNow> bodies) {
   push(row, body, rub(row.slip + way(), friction * std::min(row.push, most), row.hold));
   const double before = changed;
   stop(row, body, rub(row.velocity + change(), friction * row.stop, row.slow));
-  return before + body.motion.h * (changed - before);
+  return before + body.dt_substep * (changed - before);
 }
 
 /// Shares its push between what the substep has made and what recovers.

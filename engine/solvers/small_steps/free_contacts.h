@@ -6,16 +6,16 @@
 ///     W(d) = 1 / M + (r x d) . I^-1 (r x d),    r from its centre of mass to the particle,
 ///
 /// a push P (kg m) moves the particle by w P n, and the body by -P n / M and -I^-1 (r x n) P; a
-/// stop J (kg m/s) changes velocities alike. P makes up for what is missing of the gap, and J for
-/// the speed into the body, by Gauss and Seidel over all contacts, whose normals and points are
-/// frozen for the time of a sweep. Both are sums over the substep that stay above 0, and friction
-/// is bounded by them, the hold of positions by that of P which is no recovery. A depth of the
-/// beginning of the substep goes without speed: the starts of both are moved.
+/// stop J (kg m/s) changes velocities alike. P corrects the gap, and J the speed into the body, by
+/// Gauss-Seidel over all contacts, whose normals and points are frozen during a sweep. Both are
+/// sums over the substep that stay at or above 0, and bound the friction: friction of positions is
+/// bounded by the part of P that is no recovery. A depth from the beginning of the substep is
+/// removed without speed: the starts of both are moved.
 ///
-/// A particle that rests on a body that the caller moves does not give way to it: a push counts for
-/// the particle only along that surface. It is moved all the same, and that body moves it back: so
-/// it bears the push. A push that a later sweep takes back would lift the particle: it stays on its
-/// support, which bears so much less.
+/// A particle that rests on a body that the caller moves is supported by it: a push moves the
+/// particle only along that surface. It is pushed into the surface all the same, and that body
+/// pushes it back, so that body carries the push. If a later sweep reduces a push, the particle
+/// stays on its support, which then carries less.
 #pragma once
 
 #include <cstdint>
@@ -34,6 +34,7 @@ struct FreeBodyNow {
   SymmetricTensor inverse_inertia{};
   kernels::Vector centre{};      // of mass
   reference::BodyMotion motion;  // its velocity: of the centre of mass
+  double dt_substep = 0;         // s, also while it stands
   // What contacts have done to it in a sweep.
   kernels::Vector moved{}, turned{}, recovered{}, turned_back{};  // m, rad; of these without speed
   kernels::Vector faster{}, gained{};                             // m/s; kg m^2/s
@@ -69,7 +70,7 @@ struct FreeContact {
   void begin_substep() { *this = {.slot = slot, .body = body, .touched_before = touches}; }
 };
 
-/// Those who hold the particles, as the sweep sees them.
+/// The store of the particles, as the sweep sees it.
 class FreeContactHost {
  public:
   virtual ~FreeContactHost() = default;

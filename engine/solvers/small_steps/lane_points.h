@@ -1,4 +1,4 @@
-/// Particles of small steps in lanes, one by one: what local passes move.
+/// Particles of small steps in lanes, one by one, as local passes move them.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,7 @@ struct LanePoints {
   SimdMembrane& membrane;
   SimdBodies* bodies;  // or null: they are left
   std::vector<Arrival>& arrived;
-  std::vector<Jolt>& jolts;
+  std::vector<VelocityJump>& velocity_jumps;
   float* led_to;  // simd::Flight
 
   bool is_mended() const { return led_to != u; }

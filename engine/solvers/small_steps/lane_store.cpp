@@ -51,7 +51,7 @@ LanePoints LaneStore::points(bool with_limits) {
           .membrane = membrane_,
           .bodies = with_limits && !bodies_.empty() ? &bodies_ : nullptr,
           .arrived = now_.arrived,
-          .jolts = now_.jolts,
+          .velocity_jumps = now_.velocity_jumps,
           .led_to = now_.is_aside ? aside_.data() : u_.data()};
 }
 
@@ -110,14 +110,14 @@ void LaneStore::accelerate(kernels::Vector gravity, kernels::VectorsView force) 
 }
 
 void LaneStore::begin_bending(const FramePlan& plan) {
-  bending_.begin(plan, acceleration_.data(), now_.has_past && past_.h == now_.h);
+  bending_.begin(plan, acceleration_.data(), now_.has_past && past_.dt_substep == now_.dt_substep);
 }
 
 /// Without a past the particles are taken to have been in free flight.
 void LaneStore::begin_past(Team& team) {
   if (!now_.has_past) {
-    const auto h = static_cast<float>(now_.h),
-               push = static_cast<float>(now_.h * now_.decaying_share());
+    const auto h = static_cast<float>(now_.dt_substep),
+               push = static_cast<float>(now_.dt_substep * now_.decaying_share());
     for (std::size_t i = 0; i < layout_.floats; ++i) {
       v_before_[i] = v_[i] - push * acceleration_[i];
       u_before_[i] = u_[i] - h * v_[i] + 0.5f * h * h * acceleration_[i];
@@ -127,7 +127,7 @@ void LaneStore::begin_past(Team& team) {
   }
   const simd::Past arrays{past_.v.data(), past_.v_before.data(), past_.moved.data()};
   for_floats(team, [&](std::size_t first, std::size_t last) {
-    table_.resume(flight(), arrays, static_cast<float>(past_.h), first, last);
+    table_.resume(flight(), arrays, static_cast<float>(past_.dt_substep), first, last);
   });
 }
 
@@ -159,7 +159,7 @@ void LaneStore::split(kernels::VectorsView x, int substeps, Team& team) {
 void LaneStore::begin(kernels::VectorsView x, kernels::VectorsView v, const FramePlan& plan,
                       Team& team) {
   split(x, plan.substeps, team);
-  anchors_.begin(plan.anchors, plan.h, plan.substeps,
+  anchors_.begin(plan.anchors, plan.dt_substep, plan.substeps,
                  now_.has_past ? past_.at_limit : std::span<const std::uint16_t>{});
   anchors_.measure_base(base_.data());
   team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
@@ -187,7 +187,7 @@ void LaneStore::renew_base(Team& team) {
 
 std::optional<double> LaneStore::predict(Team& team) {
   const SubstepFormula& formula = now_.next_formula;
-  const double bh = formula.part * now_.h;
+  const double bh = formula.part * now_.dt_substep;
   weights_.past = static_cast<float>(formula.past);
   weights_.step = static_cast<float>(bh);
   weights_.push = static_cast<float>(bh * formula.share);
@@ -354,7 +354,7 @@ void LaneStore::read_velocities(kernels::VectorsView v, Team& team) const {
 }
 
 void LaneStore::keep(Team& team) {
-  past_.h = now_.h;
+  past_.dt_substep = now_.dt_substep;
   past_.since_renewal = since_renewal_;
   past_.at_limit = anchors_.at_limit();
   past_.touching = bodies_.touching();

@@ -2,10 +2,10 @@
 /// the operations do.
 ///
 /// A sweep goes over blocks, yarns that are solved exactly and single constraints, along directions
-/// that are renewed as it goes (kernels/simd/small_steps.h, small_step_yarns.h). The rest of a load
-/// is a strain that falls with the square of the substep (small_steps_load.h): the number of
-/// substeps is chosen so that few constraints are left to local passes. A substep's length must not
-/// change much: a strain is a loaded spring, which a shorter step stiffens.
+/// that are renewed as it goes (kernels/simd/small_steps.h, small_step_yarns.h). A sweep
+/// leaves a strain that falls with the square of the substep (small_steps_load.h): the number of
+/// substeps is chosen so that local passes have few constraints to correct. A substep's length must
+/// not change much: a strain is a loaded spring, which a shorter step stiffens.
 #pragma once
 
 #include <optional>
@@ -27,7 +27,7 @@ namespace weft {
 
 /// The past of a flight between two frames, in the layout of the solver.
 struct SmallStepsPast {
-  double h = 0;           // of the last substep; 0: there was none
+  double dt_substep = 0;  // of the last substep; 0: there was none
   int since_renewal = 0;  // substeps with the present base
   kernels::AlignedVector<float> v, v_before, moved;
   kernels::AlignedVector<float> base;  // of a frame that is kept
@@ -37,9 +37,10 @@ struct SmallStepsPast {
   ContactMemory contacts;
 
   friend void visit_fields(Is<SmallStepsPast> auto& past, auto& archive) {
-    auto& [h, since_renewal, v, v_before, moved, base, at_limit, touching, misplaced, contacts] =
-        past;
-    archive(h, since_renewal, v, v_before, moved, base, at_limit, touching, misplaced, contacts);
+    auto& [dt_substep, since_renewal, v, v_before, moved, base, at_limit, touching, misplaced,
+           contacts] = past;
+    archive(dt_substep, since_renewal, v, v_before, moved, base, at_limit, touching, misplaced,
+            contacts);
   }
 };
 
@@ -92,7 +93,7 @@ class LaneStore {
   double deepest_in_body(Team& team);
   void stop_at_contact(std::uint32_t slot);
   void begin_at_limit(std::uint32_t slot);
-  void jolt(std::uint32_t slot, kernels::Vector by);
+  void jump_velocity(std::uint32_t slot, kernels::Vector by);
   void set_aside() { std::ranges::copy(u_, aside_.begin()); }
   void take_past_along(Team& team);
 
@@ -108,11 +109,11 @@ class LaneStore {
   void set_fold(std::uint32_t element, double fold) { bending_.set_fold(element, fold); }
   double rounding_error(double h) const;
 
-  double past_h() const { return past_.h; }
+  double dt_of_past() const { return past_.dt_substep; }
   void keep(Team& team);
   void take_past(const LaneStore& from);
   void go_on_from(const LaneStore& other, kernels::VectorsView v, kernels::Vector gravity);
-  void forget_past() { past_.h = 0; }
+  void forget_past() { past_.dt_substep = 0; }
   void save_past(ArchiveWriter& archive) const { archive(last_past()); }
   bool load_past(ArchiveReader& archive);
   void turn(const Turn& by);
@@ -120,7 +121,7 @@ class LaneStore {
 
  private:
   simd::Flight flight();
-  double give() const { return now_.formula.give(now_.h); }
+  double give() const { return now_.formula.give(now_.dt_substep); }
   SmallStepsPast last_past() const;
   void set_past(SmallStepsPast&& past);
   void write_past(std::uint32_t slot, const ParticlePast& past);

@@ -30,7 +30,7 @@ void LaneStore::hold_by_meshes(Team& team) {
 
 void LaneStore::begin_bodies(const FramePlan& plan) {
   bodies_.begin(
-      plan.bodies, plan.h, plan.substeps, plan.projects(),
+      plan.bodies, plan.dt_substep, plan.substeps, plan.projects(),
       now_.has_past && !plan.bodies_move ? past_.touching : std::span<const std::uint16_t>{},
       plan.contact_start(), past_.misplaced, now_.has_past ? &past_.contacts : nullptr);
   if (bodies_.has_meshes()) at_hand_.make_room(model_.slots());
@@ -51,8 +51,8 @@ double LaneStore::deepest_in_body(Team& team) {
 /// The velocity v of a particle that was pushed is the mean one of this substep, and its past is
 /// such that the next one begins as by the implicit Euler method: with v + h a, at x + h v + h^2 a.
 void LaneStore::stop_at_contact(std::uint32_t slot) {
-  const auto h = static_cast<float>(now_.h),
-             push = static_cast<float>(now_.h * now_.decaying_share());
+  const auto h = static_cast<float>(now_.dt_substep),
+             push = static_cast<float>(now_.dt_substep * now_.decaying_share());
   std::size_t at = layout_.places().of(slot);
   for (int axis = 0; axis < 3; ++axis, at += layout_.places().stride) {
     const float a = acceleration_[at], v = (u_[at] - u_before_[at]) / h;
@@ -64,8 +64,8 @@ void LaneStore::stop_at_contact(std::uint32_t slot) {
 }
 
 void LaneStore::begin_at_limit(std::uint32_t slot) {
-  const auto h = static_cast<float>(now_.h),
-             push = static_cast<float>(now_.h * now_.decaying_share());
+  const auto h = static_cast<float>(now_.dt_substep),
+             push = static_cast<float>(now_.dt_substep * now_.decaying_share());
   std::size_t at = layout_.places().of(slot);
   for (int axis = 0; axis < 3; ++axis, at += layout_.places().stride) {
     v_[at] += weights_.last.rate * (u_[at] - predicted_[at]);
@@ -76,8 +76,8 @@ void LaneStore::begin_at_limit(std::uint32_t slot) {
   }
 }
 
-void LaneStore::jolt(std::uint32_t slot, kernels::Vector by) {
-  const auto h = static_cast<float>(now_.h);
+void LaneStore::jump_velocity(std::uint32_t slot, kernels::Vector by) {
+  const auto h = static_cast<float>(now_.dt_substep);
   std::size_t at = layout_.places().of(slot);
   for (const double faster : {by.x, by.y, by.z}) {
     v_[at] += weights_.last.rate * (u_[at] - predicted_[at]);

@@ -35,8 +35,8 @@ bool LaneStore::load_past(ArchiveReader& archive) {
   const bool is_past = has_sizes && past.at_limit.size() == past_.at_limit.size() &&
                        are_slots(model_, past.misplaced.inside) &&
                        are_slots(model_, past.misplaced.crossing) && past.contacts.is_whole() &&
-                       past.h >= 0 && std::isfinite(past.h) && past.since_renewal >= 0 &&
-                       past.since_renewal <= tuning::kRenewal;
+                       past.dt_substep >= 0 && std::isfinite(past.dt_substep) &&
+                       past.since_renewal >= 0 && past.since_renewal <= tuning::kRenewal;
   if (!archive.is_done() || !is_past) return false;
   set_past(std::move(past));
   return true;
@@ -47,7 +47,7 @@ void LaneStore::go_on_from(const LaneStore& other, kernels::VectorsView v,
                            kernels::Vector gravity) {
   const SmallStepsPast& its = other.past_;
   const auto& its_base = other.is_new_ ? its.base : other.base_;
-  past_.h = its.h;
+  past_.dt_substep = its.dt_substep;
   if (model_.anchors.slot == other.model_.anchors.slot)
     past_.at_limit = its.at_limit;
   else
@@ -69,7 +69,8 @@ void LaneStore::go_on_from(const LaneStore& other, kernels::VectorsView v,
     past_.misplaced.take_over(its.misplaced, its_slot, slot);
     const bool is_free = model_.inverse_mass[slot] > 0;
     if (is_free == (other.model_.inverse_mass[its_slot] > 0)) return;
-    write_past(slot, is_free ? ParticlePast::flight(v[slot], gravity, past_.h) : ParticlePast{});
+    write_past(slot,
+               is_free ? ParticlePast::flight(v[slot], gravity, past_.dt_substep) : ParticlePast{});
   });
   past_.misplaced.sort();
 }

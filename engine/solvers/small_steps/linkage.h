@@ -1,7 +1,7 @@
 /// Chains, trees and bridges of rigid links and ropes that hang from one particle at most, solved
-/// as one system: what hangs at the end of a chain pulls at its beginning in the same sweep,
-/// whatever the ratio of the masses. Between two held particles a chain may be too short: an exact
-/// solution does not share out what is too much, so that other solvers have it.
+/// as one system: a load at the end of a chain reaches its beginning in the same sweep, for any
+/// ratio of masses. A chain between two held particles may be too short, and an exact solution does
+/// not distribute that error: other solvers do these chains.
 ///
 /// The links act along their directions at the end of the substep: with C = (l^2 - L^2) / 2 of
 /// each, whose gradient J is d at one end and -d at the other,
@@ -13,10 +13,10 @@
 ///     | M + G   J^T | | dx     |   |  0 |
 ///     | J       0   | | lambda | = | -C |,     G = sum of lambda over the links (1 -1; -1 1)
 ///
-/// G holds a taut chain straight, which impulses along the predicted directions alone would shake
-/// the more the heavier its end is. It needs lambda, so that the system is solved until lambda
-/// changes little, from G = 0 on. Its unknowns are ordered so that the factorisation fills in
-/// little, in a tree not at all.
+/// G keeps a taut chain straight: without it, by impulses along the predicted directions alone, a
+/// chain with a heavy end shakes. G depends on lambda, so the system is solved again, from G = 0
+/// on, until lambda changes little. The unknowns are ordered so that the factorisation has little
+/// fill-in, and none in a tree.
 ///
 /// A rope pulls alone: its law is lambda >= 0, C + J dx <= 0, and one of the two holds with
 /// equality. Which ropes are taut is found by the same solutions (a primal-dual active set method:
@@ -24,9 +24,9 @@
 /// method", 2002), which begin with those that are not shorter than their length by more than the
 /// tolerance.
 ///
-/// A rope that becomes taut ends a motion, as the limit of an anchor does (arrivals.h): all that
-/// taut links join to it goes on at first order. BDF2 would let it bounce, by what it remembers of
-/// the flight.
+/// A rope that becomes taut ends a motion, as the limit of an anchor does (arrivals.h): all
+/// particles that taut links join to it go on at first order. BDF2 would let them bounce, since it
+/// remembers their flight.
 #pragma once
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 /// The factorisation A = L D L^T of a symmetric sparse matrix, in its own order. The matrix need
-/// not be positive: no pivot may vanish. Where L is not 0 is found once; numbers come and go
-/// without an allocation.
+/// not be positive, but no pivot may vanish. The pattern of L is found once; later factorisations
+/// allocate nothing.
 ///
-/// Row by row: what is left of a row of A, where the rows before are taken off, is that of L times
+/// It goes row by row: a row of A less the contributions of the rows before is the row of L times
 /// D (T. A. Davis, "Direct Methods for Sparse Linear Systems", 2006, section 4.7).
 #pragma once
 

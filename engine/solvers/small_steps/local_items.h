@@ -1,5 +1,5 @@
-/// The items of local passes (local_passes.h), and where each has its bit. It follows from the
-/// model alone: the cloths of a model share it.
+/// The items of local passes (local_passes.h), and the places of their bits. They follow from the
+/// model alone: the cloths of a model share them.
 ///
 /// An item is a constraint, or a triangle of fabric with its three laws; items are numbered in this
 /// order. Each particle has a mask of 64 bits, one for each of its items. A particle with more

@@ -1,9 +1,10 @@
-/// Local passes: Gauss-Seidel over what is out of tolerance, and over nothing else (paper 4.3).
+/// Local passes: Gauss-Seidel over the items that are out of tolerance, and over no others (paper
+/// 4.3).
 ///
-/// An item, a constraint or a triangle of fabric, is looked at if its bit is set at one of its ends
-/// (local_items.h), which clears all of them; where it is out of tolerance it is taken back to
-/// `mended`, which is within, and the bits of all items at its ends are set for the next pass. It
-/// ends when no bit is set. Items without a bit are looked at in every pass.
+/// An item is a constraint or a triangle of fabric. A pass visits it if its bit is set at one of
+/// its ends (local_items.h), and clears its bits. If the item is out of tolerance it is corrected
+/// to `mended`, which is within, and the bits of all items at its ends are set for the next pass.
+/// Passes end when no bit is set. Items without a bit are visited in every pass.
 #pragma once
 
 #include <bit>

@@ -1,4 +1,4 @@
-/// A particle of small steps in double and in coordinates of the world, while contacts move it.
+/// A particle of small steps in double, in coordinates of the world, while contacts move it.
 #pragma once
 
 #include <cmath>

@@ -67,8 +67,8 @@ concept SweepsOnce = requires(Store store, const Store& seen, const Relaxation& 
 // stop_at_contact(): the velocity v of a particle that was pushed is the mean one of this substep,
 // and its past is such that the next one begins as by the implicit Euler method: with v + h a, at
 // x + h v + h^2 a. begin_at_limit(): the velocity is that at the end of this substep, and the past
-// a free flight that leads to it. jolt(): the velocity before becomes faster by as much as the
-// present one did in a moment, and the last way is that of a flight between the two.
+// a free flight that leads to it. jump_velocity(): the velocity before jumps by as much as the
+// present one did, and the last way is that of a flight between the two.
 //
 // set_aside() remembers positions before mending, and take_past_along() moves the past of those
 // that mending has moved.
@@ -76,7 +76,7 @@ template <class Store>
 concept EndsMotions = requires(Store store, std::uint32_t slot, kernels::Vector by, Team& team) {
   store.stop_at_contact(slot);
   store.begin_at_limit(slot);
-  store.jolt(slot, by);
+  store.jump_velocity(slot, by);
   store.set_aside();
   store.take_past_along(team);
 };
@@ -97,13 +97,13 @@ concept IsRead = requires(Store store, const Store& seen, kernels::VectorsView x
   { seen.bytes() } -> std::same_as<std::size_t>;
 };
 
-// The past of a flight between two frames. keep() makes it of the frame that ends, past_h() is the
-// length of its last substep, or 0 where there is none.
+// The past of a flight between two frames. keep() makes it of the frame that ends, dt_of_past() is
+// the length of its last substep, or 0 where there is none.
 template <class Store>
 concept KeepsPast = requires(Store store, const Store& other, kernels::VectorsView v,
                              kernels::Vector gravity, const Turn& by, ArchiveWriter& to,
                              ArchiveReader& from, Team& team) {
-  { other.past_h() } -> std::same_as<double>;
+  { other.dt_of_past() } -> std::same_as<double>;
   store.keep(team);
   store.take_past(other);
   store.go_on_from(other, v, gravity);

@@ -35,8 +35,8 @@ class PointParticles : public ContactParticles {
   void stop(std::uint32_t slot, const TouchedSurface& surface) override {
     points_.arrived.push_back({slot, surface});
   }
-  void jolt(std::uint32_t slot, kernels::Vector by) override {
-    points_.jolts.push_back({slot, by});
+  void jump_velocity(std::uint32_t slot, kernels::Vector by) override {
+    points_.velocity_jumps.push_back({slot, by});
   }
   void push(std::uint32_t slot, kernels::Vector by, kernels::Vector comes_out) override {
     ParticleAtHand hand = points_.take(slot);

@@ -18,7 +18,7 @@ void ReferenceBodies::begin(std::span<const TravellingBody> bodies, double h, in
   on_.assign(model_.slots(), false);
   if (before.size() == on_.size()) on_ = before;
   impulses_.begin(bodies);
-  room_.begin(model_.slots());
+  shares_.begin(model_.slots());
   among_forms_.begin(model_.slots());
 }
 
@@ -28,7 +28,7 @@ void ReferenceBodies::advance(double part, ContactParticles& particles, Team& te
   if (clock_.is_interval_over()) clock_.begin_interval(meshes_.interval_for(particles, clock_));
   meshes_.predict(particles, clock_, team);
   clock_.advance();
-  room_.begin_substep();
+  shares_.begin_substep();
   meshes_.advance(particles, clock_, team);
   grips_.assign(model_.slots() * clock_.bodies().size(), {});
   before_.swap(on_);
@@ -40,10 +40,11 @@ void ReferenceBodies::advance(double part, ContactParticles& particles, Team& te
 /// pushes it: it touches them all the same.
 void ReferenceBodies::share_room(ContactParticles& particles) {
   share_among_forms(particles, before_, SubstepMoment::start);
-  for (const Room* room : {&room_, &among_forms_}) {
-    for (const Room::Entry& entry : room->entries()) {
-      reference::Yield& yield = grips_[entry.slot * clock_.bodies().size() + entry.body].yield;
-      if (entry.yield.by > yield.by) yield = entry.yield;
+  for (const ThicknessShares* shares : {&shares_, &among_forms_}) {
+    for (const ThicknessShares::Entry& entry : shares->entries()) {
+      reference::Thinning& thinning =
+          grips_[entry.slot * clock_.bodies().size() + entry.body].thinning;
+      if (entry.thinning.by > thinning.by) thinning = entry.thinning;
       if (clock_.bodies()[entry.body].mesh == nullptr) on_[entry.slot] = true;
     }
   }
@@ -56,19 +57,19 @@ void ReferenceBodies::share_among_forms(ContactParticles& particles, const Touch
     if (!touching[slot]) continue;
     const Vector x =
         when == SubstepMoment::start ? particles.start(slot) : particles.position(slot);
-    claims_.clear();
+    clearances_.clear();
     for (std::size_t body = 0; body < clock_.bodies().size(); ++body) {
       if (clock_.bodies()[body].mesh == nullptr)
-        claims_.push_back(claim_of(clock_, body, x, radius(slot), when));
+        clearances_.push_back(clearance_of(clock_, body, x, radius(slot), when));
     }
-    among_forms_.share(claims_, clock_.h(), slot);
+    among_forms_.share(clearances_, clock_.dt_substep(), slot);
   }
 }
 
 double ReferenceBodies::spared_by(std::size_t body, std::uint32_t slot) const {
   const auto id = static_cast<std::uint32_t>(body);
-  const double yielded = std::max(room_.of(slot, id).by, among_forms_.of(slot, id).by);
-  return std::min(clock_.motions()[body].thickness + radius(slot), yielded);
+  const double thinned = std::max(shares_.of(slot, id).by, among_forms_.of(slot, id).by);
+  return std::min(clock_.motions()[body].thickness + radius(slot), thinned);
 }
 
 /// They move by any way: nobody knows how far.

@@ -16,7 +16,7 @@ namespace weft {
 class ReferenceBodies {
  public:
   ReferenceBodies(const Model& model, const simd::Table& table)
-      : model_(model), meshes_(model, table, room_) {}
+      : model_(model), meshes_(model, table, shares_) {}
 
   using Touching = std::vector<bool>;  // per slot
 
@@ -95,14 +95,14 @@ class ReferenceBodies {
 
   const Model& model_;
   BodyClock clock_;
-  Room room_;         // beside meshes
-  Room among_forms_;  // of bodies of a closed form among themselves
+  ThicknessShares shares_;       // beside meshes
+  ThicknessShares among_forms_;  // of bodies of a closed form among themselves
   SurfaceContacts meshes_;
   double momentum_share_ = 1;
   std::vector<reference::Grip> grips_;  // per slot and body
   Touching on_, before_;
-  std::vector<Claim> claims_;  // scratch
-  ContactImpulses impulses_;   // but for those that meshes have given
+  std::vector<BodyClearance> clearances_;  // scratch
+  ContactImpulses impulses_;               // but for those that meshes have given
 };
 
 }  // namespace weft

@@ -49,7 +49,7 @@ ReferenceStore::Points ReferenceStore::points(bool with_limits) {
           .of_membrane = membrane_multiplier_,
           .bodies = with_limits && !bodies_.empty() ? &bodies_ : nullptr,
           .arrived = now_.arrived,
-          .jolts = now_.jolts,
+          .velocity_jumps = now_.velocity_jumps,
           .led_to = now_.is_aside ? aside_.view() : x_.view()};
 }
 
@@ -59,7 +59,7 @@ reference::Flight ReferenceStore::flight() {
 
 void ReferenceStore::begin(kernels::VectorsView x, kernels::VectorsView v, const FramePlan& plan,
                            Team&) {
-  anchors_.begin(plan.anchors, plan.h, plan.substeps);
+  anchors_.begin(plan.anchors, plan.dt_substep, plan.substeps);
   at_limit_.assign(at_limit_.size(), false);
   if (now_.has_past && !plan.anchors.moving) at_limit_ = past_.at_limit;
   last_ = 0;
@@ -89,14 +89,14 @@ void ReferenceStore::begin_bending(const FramePlan& plan) {
   bending_.forget_guess();
   if (bending_frame_.is_factored())
     bending_.prepare_factor(model_.bending_fronts(), bending_frame_.usual().law(),
-                            now_.has_past && past_.h == now_.h);
+                            now_.has_past && past_.dt_substep == now_.dt_substep);
   else
     bending_.prepare_diagonal(bending_frame_.usual().law());
 }
 
 /// Without a past the particles are taken to have been in free flight.
 void ReferenceStore::begin_past(Team&) {
-  const double h = now_.h, push = h * now_.decaying_share();
+  const double h = now_.dt_substep, push = h * now_.decaying_share();
   for (std::size_t i = 0; i < model_.slots(); ++i) {
     const Vector a = acceleration_[i];
     if (!now_.has_past) {
@@ -106,7 +106,7 @@ void ReferenceStore::begin_past(Team&) {
     }
     const Vector jump = v_[i] - past_.v[i];
     v_before_.set(i, past_.v_before[i] + jump);
-    before_.set(i, x_[i] - (past_.moved[i] + past_.h * jump));
+    before_.set(i, x_[i] - (past_.moved[i] + past_.dt_substep * jump));
   }
 }
 
@@ -125,7 +125,7 @@ std::optional<double> ReferenceStore::departure() {
 std::optional<double> ReferenceStore::predict(Team&) {
   const auto largest = now_.measures_departures() ? departure() : std::nullopt;
   const SubstepFormula& formula = now_.next_formula;
-  const double bh = formula.part * now_.h;
+  const double bh = formula.part * now_.dt_substep;
   for (std::size_t i = 0; i < model_.slots(); ++i) {
     reference::advance(flight(), i, acceleration_[i], formula.past, bh, bh * formula.share, last_);
   }
@@ -145,7 +145,7 @@ void ReferenceStore::decay(double to, Team&) {
 /// Bends all elements at once. Particles go where the last force of bending takes them, and from
 /// there to where they bend to; hinges folded at rest begin at the prediction (simd_bending.cpp).
 void ReferenceStore::bend(Team& team) {
-  const std::optional<BendingStep> step = bending_frame_.next(now_.formula.give(now_.h));
+  const std::optional<BendingStep> step = bending_frame_.next(now_.formula.give(now_.dt_substep));
   if (!step) return;
   double* const guess = bending_.guess();
   const bool begins_anew = give_ == 0 || !layout_.bending.folds.empty();
@@ -344,7 +344,7 @@ void ReferenceStore::read_velocities(kernels::VectorsView v, Team&) const {
 }
 
 void ReferenceStore::keep(Team&) {
-  past_.h = now_.h;
+  past_.dt_substep = now_.dt_substep;
   past_.v = v_;
   past_.v_before = v_before_;
   past_.at_limit = at_limit_;
@@ -358,7 +358,7 @@ bool ReferenceStore::Points::grip(std::uint32_t slot) const {
   const bool is_held = grip_by_bodies(slot);
   if (!bodies->has_meshes()) return is_held;
   PointParticles particles(*this);
-  return bodies->meshes().hold(particles, bodies->clock(), slot) || is_held;
+  return bodies->meshes().solve_at(particles, bodies->clock(), slot) || is_held;
 }
 
 void ReferenceStore::hold_anchors(Team&) {
@@ -381,7 +381,7 @@ void ReferenceStore::advance_anchors() {
 }
 
 void ReferenceStore::begin_bodies(const FramePlan& plan) {
-  bodies_.begin(plan.bodies, plan.h, plan.substeps, plan.projects(),
+  bodies_.begin(plan.bodies, plan.dt_substep, plan.substeps, plan.projects(),
                 now_.has_past && !plan.bodies_move ? past_.touching : ReferenceBodies::Touching{},
                 plan.contact_start(), past_.misplaced, now_.has_past ? &past_.contacts : nullptr);
   if (bodies_.has_meshes()) at_hand_.make_room(model_.slots());
@@ -420,36 +420,36 @@ double ReferenceStore::deepest_in_body(Team& team) {
 }
 
 void ReferenceStore::stop_at_contact(std::uint32_t i) {
-  const Vector v = (1 / now_.h) * (x_[i] - before_[i]),
-               gain = now_.h * now_.decaying_share() * acceleration_[i];
+  const Vector v = (1 / now_.dt_substep) * (x_[i] - before_[i]),
+               gain = now_.dt_substep * now_.decaying_share() * acceleration_[i];
   predicted_.set(i, x_[i]);
   v_.set(i, v);
   v_before_.set(i, v - gain);
-  before_.set(i, x_[i] - now_.h * (v + gain));
+  before_.set(i, x_[i] - now_.dt_substep * (v + gain));
 }
 
 void ReferenceStore::begin_at_limit(std::uint32_t i) {
   const double rate = last_ > 0 ? 1 / last_ : 0;  // settled already: what is predicted is there
   const Vector a = acceleration_[i], v = v_[i] + rate * (x_[i] - predicted_[i]);
-  const Vector v_before = v - now_.h * now_.decaying_share() * a;
+  const Vector v_before = v - now_.dt_substep * now_.decaying_share() * a;
   predicted_.set(i, x_[i]);
   v_.set(i, v);
   v_before_.set(i, v_before);
-  before_.set(i, x_[i] - now_.h * v + (0.5 * now_.h * now_.h) * a);
+  before_.set(i, x_[i] - now_.dt_substep * v + (0.5 * now_.dt_substep * now_.dt_substep) * a);
 }
 
-void ReferenceStore::jolt(std::uint32_t i, Vector by) {
+void ReferenceStore::jump_velocity(std::uint32_t i, Vector by) {
   const double rate = last_ > 0 ? 1 / last_ : 0;
   const Vector v = v_[i] + rate * (x_[i] - predicted_[i]), v_before = v_before_[i] + by;
   predicted_.set(i, x_[i]);
   v_.set(i, v);
   v_before_.set(i, v_before);
-  before_.set(i, x_[i] - now_.h * v);
+  before_.set(i, x_[i] - now_.dt_substep * v);
 }
 
 void ReferenceStore::go_on_from(const ReferenceStore& other, kernels::VectorsView v,
                                 kernels::Vector gravity) {
-  past_.h = other.past_.h;
+  past_.dt_substep = other.past_.dt_substep;
   if (model_.anchors.slot == other.model_.anchors.slot)
     past_.at_limit = other.past_.at_limit;
   else
@@ -462,7 +462,8 @@ void ReferenceStore::go_on_from(const ReferenceStore& other, kernels::VectorsVie
     const Past& its = other.past_;
     ParticlePast past{its.v[its_slot], its.v_before[its_slot], its.moved[its_slot]};
     if (now_.is_free(slot) != other.now_.is_free(its_slot))
-      past = now_.is_free(slot) ? ParticlePast::flight(v[slot], gravity, past_.h) : ParticlePast{};
+      past = now_.is_free(slot) ? ParticlePast::flight(v[slot], gravity, past_.dt_substep)
+                                : ParticlePast{};
     past_.v.set(slot, past.v);
     past_.v_before.set(slot, past.v_before);
     past_.moved.set(slot, past.moved);
@@ -479,7 +480,7 @@ bool ReferenceStore::load_past(ArchiveReader& archive) {
                        past.at_limit.size() == at_limit_.size() &&
                        are_slots(model_, past.misplaced.inside) &&
                        are_slots(model_, past.misplaced.crossing) && past.contacts.is_whole() &&
-                       past.h >= 0 && std::isfinite(past.h);
+                       past.dt_substep >= 0 && std::isfinite(past.dt_substep);
   if (!archive.is_done() || !is_past) return false;
   past_ = std::move(past);
   return true;

@@ -24,7 +24,7 @@ class ReferenceStore {
  public:
   struct Points;
   struct Past {
-    double h = 0;  // of the last substep; 0: there was none
+    double dt_substep = 0;  // of the last substep; 0: there was none
     kernels::Vectors v, v_before, moved;
     std::vector<bool> at_limit;  // per anchor
     ReferenceBodies::Touching touching;
@@ -32,8 +32,8 @@ class ReferenceStore {
     ContactMemory contacts;
 
     friend void visit_fields(Is<Past> auto& past, auto& archive) {
-      auto& [h, v, v_before, moved, at_limit, touching, misplaced, contacts] = past;
-      archive(h, v, v_before, moved, at_limit, touching, misplaced, contacts);
+      auto& [dt_substep, v, v_before, moved, at_limit, touching, misplaced, contacts] = past;
+      archive(dt_substep, v, v_before, moved, at_limit, touching, misplaced, contacts);
     }
   };
 
@@ -87,7 +87,7 @@ class ReferenceStore {
   double deepest_in_body(Team& team);
   void stop_at_contact(std::uint32_t slot);
   void begin_at_limit(std::uint32_t slot);
-  void jolt(std::uint32_t slot, kernels::Vector by);
+  void jump_velocity(std::uint32_t slot, kernels::Vector by);
 
   void set_aside() { aside_ = x_; }
   void take_past_along(Team& team);
@@ -104,11 +104,11 @@ class ReferenceStore {
   void set_fold(std::uint32_t element, double fold) { folds_[element] = fold; }
   double rounding_error(double) const { return 0; }
 
-  double past_h() const { return past_.h; }
+  double dt_of_past() const { return past_.dt_substep; }
   void keep(Team& team);
   void take_past(const ReferenceStore& from) { past_ = from.past_; }
   void go_on_from(const ReferenceStore& other, kernels::VectorsView v, kernels::Vector gravity);
-  void forget_past() { past_.h = 0; }
+  void forget_past() { past_.dt_substep = 0; }
   void save_past(ArchiveWriter& archive) const { archive(past_); }
   bool load_past(ArchiveReader& archive);
   void turn(const Turn& by);
@@ -168,7 +168,7 @@ struct ReferenceStore::Points {
   std::vector<reference::MembraneMultipliers>& of_membrane;
   ReferenceBodies* bodies;  // or null: they are left
   std::vector<Arrival>& arrived;
-  std::vector<Jolt>& jolts;
+  std::vector<VelocityJump>& velocity_jumps;
   kernels::VectorsView led_to;  // as simd::Flight has it
 
   bool is_mended() const { return led_to.x != x.x; }

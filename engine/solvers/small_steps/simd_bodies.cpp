@@ -38,7 +38,7 @@ void SimdBodies::begin(std::span<const TravellingBody> bodies, double h, int sub
   on_.assign(layout_.blocks.size(), 0);
   if (before.size() == on_.size()) std::ranges::copy(before, on_.begin());
   impulses_.begin(bodies);
-  room_.begin(model_.slots());
+  shares_.begin(model_.slots());
   among_forms_.begin(model_.slots());
 }
 
@@ -52,37 +52,37 @@ void SimdBodies::advance(const simd::Flight& flight, const float* base, double p
   }
   meshes_.predict(particles, clock_, team);
   clock_.advance();
-  room_.begin_substep();
+  shares_.begin_substep();
   meshes_.advance(particles, clock_, team);
   write_frames();
   before_.swap(on_);
   std::ranges::fill(on_, std::uint16_t{0});
   for (simd::BodyGrips& grips : grips_) {
     for (float* lanes : {grips.pushed, grips.held, grips.stopped, grips.slowed, grips.came_out,
-                         grips.yields_by, grips.retreat})
+                         grips.thinned_by, grips.retreat})
       std::fill_n(lanes, kLanes, 0.f);
   }
   for (auto* bits : {&touching_, &moved_, &quick_}) std::ranges::fill(*bits, std::uint16_t{0});
   share_room(particles);
 }
 
-/// To particles that touched a body when the last substep ended. Yields of bodies of a closed form
-/// to any particle are for lanes, too. Where it has its share no body pushes it: it touches them
-/// all the same, and has its share in the next substep.
+/// To particles that touched a body when the last substep ended. Thinnings of bodies of a closed
+/// form to any particle are for lanes, too. Where it has its share no body pushes it: it touches
+/// them all the same, and has its share in the next substep.
 void SimdBodies::share_room(ContactParticles& particles) {
   share_among_forms(particles, before_, SubstepMoment::start);
   if (pairs_.empty()) return;
-  for (const Room* room : {&room_, &among_forms_}) {
-    for (const Room::Entry& entry : room->entries()) {
+  for (const ThicknessShares* shares : {&shares_, &among_forms_}) {
+    for (const ThicknessShares::Entry& entry : shares->entries()) {
       const std::uint32_t place = layout_.place_of[entry.slot];
       if (place == kNoIndex) continue;
       const std::size_t block = place / kLanes, lane = place % kLanes;
       for (std::size_t i = pairs_of_[block]; i < pairs_of_[block + 1]; ++i) {
         if (pairs_[i].body != entry.body) continue;
         on_[block] = static_cast<std::uint16_t>(on_[block] | 1u << lane);
-        if (!(static_cast<float>(entry.yield.by) > grips_[i].yields_by[lane])) continue;
-        grips_[i].yields_by[lane] = static_cast<float>(entry.yield.by);
-        grips_[i].retreat[lane] = static_cast<float>(entry.yield.retreat);
+        if (!(static_cast<float>(entry.thinning.by) > grips_[i].thinned_by[lane])) continue;
+        grips_[i].thinned_by[lane] = static_cast<float>(entry.thinning.by);
+        grips_[i].retreat[lane] = static_cast<float>(entry.thinning.retreat);
       }
     }
   }
@@ -101,10 +101,10 @@ void SimdBodies::share_among_forms(ContactParticles& particles, const Touching& 
       const auto radius = static_cast<double>(layout_.blocks[block].radius[lane]);
       const Vector x =
           when == SubstepMoment::start ? particles.start(slot) : particles.position(slot);
-      claims_.clear();
+      clearances_.clear();
       for (std::size_t i = first; i < last; ++i)
-        claims_.push_back(claim_of(clock_, pairs_[i].body, x, radius, when));
-      among_forms_.share(claims_, clock_.h(), slot);
+        clearances_.push_back(clearance_of(clock_, pairs_[i].body, x, radius, when));
+      among_forms_.share(clearances_, clock_.dt_substep(), slot);
     }
   }
 }
@@ -126,7 +126,7 @@ simd::BodyHold SimdBodies::hold_of(const simd::Flight& flight, const float* base
           .woven = model_.small_steps().places().woven(),
           .rate = rate,
           .momentum_share = static_cast<float>(momentum_share_),
-          .h = static_cast<float>(clock_.h())};
+          .h = static_cast<float>(clock_.dt_substep())};
 }
 
 void SimdBodies::hold(const simd::Flight& flight, const float* base, float rate, Team& team) {
@@ -181,10 +181,12 @@ TouchedSurface SimdBodies::hold_by(std::uint32_t slot, ContactParticle& particle
         look(body, particle.start, particle.x, number(layout_.blocks[block].radius[lane]));
     if (!touch.is_near) continue;
     simd::BodyGrips& lanes = grips_[i];
-    reference::Grip grip{
-        number(lanes.pushed[lane]),   number(lanes.held[lane]),
-        number(lanes.stopped[lane]),  number(lanes.slowed[lane]),
-        number(lanes.came_out[lane]), {number(lanes.yields_by[lane]), number(lanes.retreat[lane])}};
+    reference::Grip grip{number(lanes.pushed[lane]),
+                         number(lanes.held[lane]),
+                         number(lanes.stopped[lane]),
+                         number(lanes.slowed[lane]),
+                         number(lanes.came_out[lane]),
+                         {number(lanes.thinned_by[lane]), number(lanes.retreat[lane])}};
     const reference::Gripped gripped =
         grip_by(body, touch, particle.start, particle.x, particle.v, grip);
     if (!gripped.is_touching) continue;
@@ -262,14 +264,14 @@ bool SimdBodies::begins_to_touch(std::uint32_t slot) {
 
 std::array<float, kLanes> SimdBodies::spared_by(std::size_t block, std::uint32_t body) const {
   std::array<float, kLanes> spared{};
-  if (!room_.any() && !among_forms_.any()) return spared;
+  if (!shares_.any() && !among_forms_.any()) return spared;
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const std::uint32_t slot = layout_.slot_at[block * kLanes + lane];
     if (slot == kNoIndex) continue;
     const double most =
         clock_.motions()[body].thickness + static_cast<double>(layout_.blocks[block].radius[lane]);
-    const double yielded = std::max(room_.of(slot, body).by, among_forms_.of(slot, body).by);
-    spared[lane] = static_cast<float>(std::min(most, yielded));
+    const double thinned = std::max(shares_.of(slot, body).by, among_forms_.of(slot, body).by);
+    spared[lane] = static_cast<float>(std::min(most, thinned));
   }
   return spared;
 }
@@ -350,8 +352,8 @@ std::size_t SimdBodies::bytes() const {
          bytes_of(pairs_) + bytes_of(first_pair_) + bytes_of(pairs_of_) + bytes_of(grips_) +
          bytes_of(touching_) + bytes_of(moved_) + bytes_of(quick_) + bytes_of(on_) +
          bytes_of(before_) + bytes_of(held_) + bytes_of(arrived_) + bytes_of(impulses_.of_body) +
-         bytes_of(boxes_) + bytes_of(extents_) + bytes_of(now_) + bytes_of(claims_) +
-         room_.bytes() + among_forms_.bytes();
+         bytes_of(boxes_) + bytes_of(extents_) + bytes_of(now_) + bytes_of(clearances_) +
+         shares_.bytes() + among_forms_.bytes();
 }
 
 }  // namespace weft

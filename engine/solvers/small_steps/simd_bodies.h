@@ -29,7 +29,7 @@ class SimdBodies {
         far_(tuning::kLocalShare * settings.tolerance),
         contact_tolerance_(settings.contact_tolerance),
         table_(table),
-        meshes_(model, table, room_) {}
+        meshes_(model, table, shares_) {}
 
   /// The particles that touched a body when the last substep of a frame ended, per block.
   using Touching = std::vector<std::uint16_t>;
@@ -58,7 +58,7 @@ class SimdBodies {
   template <class Moved>
   void hold_by_meshes(ContactParticles& particles, Team& team, Moved&& moved);
   void hold_by_meshes(std::uint32_t slot, ContactParticles& particles) {
-    meshes_.hold(particles, clock_, slot);
+    meshes_.solve_at(particles, clock_, slot);
   }
   /// As ContactParticles::momentum_share().
   double momentum_share() const { return momentum_share_; }
@@ -156,8 +156,8 @@ class SimdBodies {
   const double contact_tolerance_;  // m
   const simd::Table& table_;
   BodyClock clock_;
-  Room room_;         // beside meshes
-  Room among_forms_;  // of bodies of a closed form among themselves
+  ThicknessShares shares_;       // beside meshes
+  ThicknessShares among_forms_;  // of bodies of a closed form among themselves
   SurfaceContacts meshes_;
   BodyLayout layout_;  // made when the first body is there
   double h_ = 0;
@@ -177,7 +177,7 @@ class SimdBodies {
   std::vector<BodyClock::Box> boxes_;  // scratch
   std::vector<Extent> extents_;        // likewise
   std::vector<std::uint16_t> now_;     // likewise
-  std::vector<Claim> claims_;          // likewise
+  std::vector<BodyClearance> clearances_;  // likewise
 };
 
 template <class Arrived, class Moved, class Quick>

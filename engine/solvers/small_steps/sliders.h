@@ -141,7 +141,7 @@ class SliderThreads {
   }
 
   /// rad, by which a rail that moves freely turns over the particle: between the pieces beside its
-  /// own. One of fixed particles turns by itself, whoever slides on it.
+  /// own. One of fixed particles turns by itself, whatever slides on it.
   template <class Points>
   double turn_at(const Points& points, std::size_t i, reference::RailPlace place) const {
     const std::array<std::uint32_t, 4> rail = model_.sliders.around(i, place.piece);

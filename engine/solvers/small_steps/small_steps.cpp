@@ -37,16 +37,17 @@ class StoredSmallSteps final : public SmallSteps {
 
   void begin(kernels::VectorsView x, kernels::VectorsView v, kernels::Vector gravity,
              kernels::VectorsView force, const FramePlan& plan, Team& team) override {
-    now_.h = plan.h;
+    now_.dt_substep = plan.dt_substep;
     now_.omega = plan.omega;
     now_.softest = plan.softest;
     now_.is_begun = now_.is_aside = false;
     now_.passes.forget();
     now_.touched.clear();
     now_.arrived.clear();
-    now_.jolts.clear();
-    now_.has_past = !plan.placed && plan.h <= SubstepFormula::kLargestRatio * store_.past_h();
-    seams_.begin(plan.seams, plan.projects() ? 0 : plan.h);
+    now_.velocity_jumps.clear();
+    now_.has_past =
+        !plan.placed && plan.dt_substep <= SubstepFormula::kLargestRatio * store_.dt_of_past();
+    seams_.begin(plan.seams, plan.projects() ? 0 : plan.dt_substep);
     sliders_.begin(plan.sliders, !plan.projects());
     if (model_.may_tear) carried_.begin(plan.substeps);
     departures_.begin();
@@ -57,13 +58,13 @@ class StoredSmallSteps final : public SmallSteps {
     store_.begin_past(team);
     begin_bodies(plan, team);
     begin_free_bodies(plan, gravity);
-    now_.next_formula = now_.formula_after(now_.has_past ? store_.past_h() : now_.h);
+    now_.next_formula = now_.formula_after(now_.has_past ? store_.dt_of_past() : now_.dt_substep);
   }
   void accelerate(kernels::Vector gravity, kernels::VectorsView force) override {
     store_.accelerate(gravity, force);
   }
 
-  double give_of_force() const override { return now_.formula.give(now_.h); }
+  double give_of_force() const override { return now_.formula.give(now_.dt_substep); }
   void shift(std::uint32_t slot, kernels::Vector by) override {
     store_.points(true).move(slot, by);
   }
@@ -79,7 +80,7 @@ class StoredSmallSteps final : public SmallSteps {
       store_.decay(now_.next_formula.left, team);
     }
     add_departure(store_.predict(team));
-    now_.formula = std::exchange(now_.next_formula, now_.formula_after(now_.h));
+    now_.formula = std::exchange(now_.next_formula, now_.formula_after(now_.dt_substep));
     store_.advance_anchors();
     advance_bodies(now_.formula.part, team);
     advance_free_bodies();
@@ -278,8 +279,8 @@ class StoredSmallSteps final : public SmallSteps {
     }
   }
   void begin_free_bodies(const FramePlan& plan, kernels::Vector gravity) {
-    free_.begin(plan.free, {.h = plan.h,
-                            .past_h = store_.past_h(),
+    free_.begin(plan.free, {.dt_substep = plan.dt_substep,
+                            .dt_of_past = store_.dt_of_past(),
                             .substeps = plan.substeps,
                             .stands = plan.projects(),
                             .has_past = now_.has_past,
@@ -361,8 +362,8 @@ class StoredSmallSteps final : public SmallSteps {
       PointParticles particles(points);
       store_.bodies().end_substep(particles, team);
     }
-    take_jolts(now_.jolts, [&](const Jolt& jolt) {
-      if (now_.is_free(jolt.slot)) store_.jolt(jolt.slot, jolt.by - held_by_body(jolt));
+    take_velocity_jumps(now_.velocity_jumps, [&](const VelocityJump& jump) {
+      if (now_.is_free(jump.slot)) store_.jump_velocity(jump.slot, jump.by - held_by_body(jump));
     });
     take_arrivals(now_.arrived, [&](const Arrival& arrival) { begin_at_limit(arrival); });
     if (!free_.empty())
@@ -377,22 +378,22 @@ class StoredSmallSteps final : public SmallSteps {
     return {points.position(slot), store_.velocity_before(slot) - v,
             start - points.position_at_start(slot)};
   }
-  /// The part of a jolt that bodies keep out.
-  kernels::Vector held_by_body(const Jolt& jolt) {
+  /// The part of a jump that bodies keep out.
+  kernels::Vector held_by_body(const VelocityJump& jump) {
     auto& bodies = store_.bodies();
     if (bodies.empty()) return {};
-    const kernels::Vector x = store_.points(false).position(jolt.slot);
-    const double counts = model_.mass[jolt.slot] * now_.next_formula.share_of_past();
-    if (const auto [surface, normal] = bodies.meshes().touched_by(jolt.slot); surface.is_there()) {
-      const kernels::Vector into = std::min(0.0, dot(normal, jolt.by)) * normal;
+    const kernels::Vector x = store_.points(false).position(jump.slot);
+    const double counts = model_.mass[jump.slot] * now_.next_formula.share_of_past();
+    if (const auto [surface, normal] = bodies.meshes().touched_by(jump.slot); surface.is_there()) {
+      const kernels::Vector into = std::min(0.0, dot(normal, jump.by)) * normal;
       bodies.load_of_mesh(surface, x, counts * into);
       return into;
     }
-    if (!bodies.touches(jolt.slot)) return {};
-    const auto [surface, normal] = bodies.nearest_surface(jolt.slot, x);
+    if (!bodies.touches(jump.slot)) return {};
+    const auto [surface, normal] = bodies.nearest_surface(jump.slot, x);
     if (!surface.is_there()) return {};
-    const kernels::Vector into = std::min(0.0, dot(normal, jolt.by)) * normal;
-    bodies.arrive(surface, x, store_.velocity(jolt.slot), counts * into);
+    const kernels::Vector into = std::min(0.0, dot(normal, jump.by)) * normal;
+    bodies.arrive(surface, x, store_.velocity(jump.slot), counts * into);
     return into;
   }
   /// The velocity is that at the end of this substep, and the past a free flight that leads to it.

@@ -1,6 +1,6 @@
 /// Small steps: one relaxed sweep over all constraints in each of many substeps, and then passes
-/// over those alone that are out of tolerance. This is what a frame (engine/step/small_step.cpp)
-/// asks of them; small_steps.cpp has their order.
+/// over only those that are out of tolerance. This is their interface for a frame
+/// (engine/step/small_step.cpp); small_steps.cpp has their order.
 #pragma once
 
 #include <weft/weft.h>

@@ -10,26 +10,26 @@
 ///
 ///     h = sqrt(omega epsilon L / (6 g H)).
 ///
-/// H is how many particles a particle next to the pins carries: the mass of all that hangs, divided
-/// by the mass of the particles on blocks that hold a pin; or the number of blocks between a pin
-/// and the particle that is farthest from all pins, if that is larger. One is subtracted, since a
-/// block carries its own particles, and (1 - omega) / 2 is added for what a relaxed sweep leaves of
-/// those. Where there are no yarns, or ropes beside them, the load may run through single
+/// H is the number of particles that a particle next to the pins carries. It is the hanging mass
+/// over the mass of the particles on blocks with a pin; or the number of blocks between a pin and
+/// the particle that is farthest from all pins, if that is larger. One is subtracted, since a block
+/// carries its own particles, and (1 - omega) / 2 is added for the rest that a relaxed sweep leaves
+/// of those. Where there are no yarns, or ropes beside them, the load may run through single
 /// constraints one by one: there the way to the pin is counted in constraints. Cloth without pins,
 /// in a scene of spheres, may come to hang over one: its way is half of that across it.
 ///
-/// Anchors hold as pins do, those of the narrowest limits (anchors_that_hold). One without a limit
-/// to move within is a pin. To a sweep another anchored particle is one that can move: it counts as
-/// a block of its own, and all that hangs on it as what that carries, the yarn that it is in too.
+/// Anchors with the narrowest limits hold as pins do (anchors_that_hold). An anchor with a largest
+/// distance of 0 is a pin. Another anchored particle can move in a sweep: it counts as a block of
+/// its own, and carries all that hangs on it, its own yarn included.
 ///
 /// A yarn between two pins whose length exceeds their distance by the share s sags with the slope
 /// sqrt(6 s). Its tension is its load divided by that slope, where the slope is below 1.
 ///
-/// Ropes from a pin to the midst of a cloth (tethers) are slack where the constraints between hold,
-/// so they count as nothing, unless some particle hangs on them alone. Free spheres that come to
-/// lie on a cloth are more to carry.
+/// Ropes from a pin to the middle of a cloth (tethers) are slack as long as the constraints between
+/// hold, so they do not count unless a particle hangs on them alone. Free spheres that may lie on
+/// the cloth add to the load.
 ///
-/// A linkage (linkage.h) is one block, which leaves nothing of its load and may turn over.
+/// A linkage (linkage.h) is one block, which carries its whole load and may turn over.
 ///
 /// No other constraint should turn over within a substep. A particle that has fallen as far as the
 /// cloth reaches from its pins, D, has the speed sqrt(2 g D), and h is at most a part of L over

@@ -1,5 +1,5 @@
-/// The substep that is being done, as its order (small_steps.cpp) and a store of its particles
-/// (lane_store.h, reference_store.h) both see it.
+/// The present substep, as small_steps.cpp and the store of particles (lane_store.h,
+/// reference_store.h) share it.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct Substep {
   const Settings settings;
   LocalPasses passes{model, model.small_steps().items};
 
-  double h = 0, omega = 1;                   // FramePlan
+  double dt_substep = 0, omega = 1;          // FramePlan
   std::optional<double> softest{};           // likewise
   bool has_past = false;                     // the past of the store is that of the present frame
   SubstepFormula formula{}, next_formula{};  // of the present substep, and of the next
@@ -33,7 +33,7 @@ struct Substep {
   bool is_aside = false;                     // positions before mending were set aside
   std::vector<std::uint32_t> touched{};      // slots that contacts have pushed
   std::vector<Arrival> arrived{};
-  std::vector<Jolt> jolts{};
+  std::vector<VelocityJump> velocity_jumps{};
   double stiffest = stiffest_law(model.membrane);
 
   bool is_free(std::size_t slot) const { return model.inverse_mass[slot] > 0; }
@@ -41,8 +41,8 @@ struct Substep {
   /// Strain at which local passes look at a constraint.
   double local_tolerance() const { return tuning::kLocalShare * settings.tolerance; }
   LawStep law_step() const {
-    if (softest) return {{1 / (h * h), 0}, *softest};
-    const double give = formula.give(h), damping = model.damping.stretch / h;
+    if (softest) return {{1 / (dt_substep * dt_substep), 0}, *softest};
+    const double give = formula.give(dt_substep), damping = model.damping.stretch / dt_substep;
     return {.springs = {1 / give, damping}, .damping_of_triangles = dampable(damping, give)};
   }
   /// The part of a damping with which one sweep still holds the laws of triangles at rest. A visit
@@ -53,17 +53,17 @@ struct Substep {
     if (own == 0) return damping;
     return std::min(damping, std::max(most_own / own - 1, tuning::kLeastDamping));
   }
-  /// The formula of a substep of h after one of h_before.
-  SubstepFormula formula_after(double h_before) const {
-    return SubstepFormula::of(settings.scheme, h / h_before)
-        .with_decay(model.damping.motion, h, h_before);
+  /// The formula of a substep of dt_substep after one of dt_before.
+  SubstepFormula formula_after(double dt_before) const {
+    return SubstepFormula::of(settings.scheme, dt_substep / dt_before)
+        .with_decay(model.damping.motion, dt_substep, dt_before);
   }
-  /// The share of h in which accelerations act in a flight.
+  /// The share of dt_substep in which accelerations act in a flight.
   double decaying_share() const {
-    return SubstepFormula{}.with_decay(model.damping.motion, h, h).share;
+    return SubstepFormula{}.with_decay(model.damping.motion, dt_substep, dt_substep).share;
   }
   std::size_t bytes() const {
-    return passes.bytes() + bytes_of(touched) + bytes_of(arrived) + bytes_of(jolts);
+    return passes.bytes() + bytes_of(touched) + bytes_of(arrived) + bytes_of(velocity_jumps);
   }
 };
 

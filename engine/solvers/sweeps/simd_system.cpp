@@ -26,12 +26,12 @@ std::size_t ContactLanes::bytes() const {
 
 void SpringLanes::resize(std::size_t n) {
   for (auto* values : {&target, &softness, &multiplier, &unit, &rest}) values->resize(n);
-  for (auto* values : {&yield, &held}) values->resize(n);
+  for (auto* values : {&compliance_share, &held}) values->resize(n);
 }
 
 std::size_t SpringLanes::bytes() const {
   return bytes_of(target) + bytes_of(softness) + bytes_of(multiplier) + bytes_of(unit) +
-         bytes_of(rest) + bytes_of(yield) + bytes_of(held);
+         bytes_of(rest) + bytes_of(compliance_share) + bytes_of(held);
 }
 
 SimdSystem::SimdSystem(const Model& model, const Settings& settings, const simd::Table& table)
@@ -121,7 +121,7 @@ void SimdSystem::take_laws(const SpringLaws& laws, bool first_round) {
     block.gain_b[c % kernels::kLanes] = static_cast<float>(gain * layout_.share_b[c]);
     s.target[c] = laws.target[constraint];
     s.softness[c] = laws.softness[constraint];
-    s.yield[c] = static_cast<float>(s.softness[c] / all);
+    s.compliance_share[c] = static_cast<float>(s.softness[c] / all);
     s.unit[c] = tau / all;
     if (first_round) s.multiplier[c] = 0;
   }
@@ -220,7 +220,7 @@ simd::BlockRelaxation SimdSystem::relaxation(ScaledConstraints& constraints) {
   r.blocks = constraints.blocks.data();
   r.impulse = impulse_.data();
   if (springs_) {
-    r.yield = springs_->yield.data();
+    r.compliance_share = springs_->compliance_share.data();
     r.held = springs_->held.data();
   }
   r.a = layout_.a.data();

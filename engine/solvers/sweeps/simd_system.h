@@ -50,7 +50,7 @@ struct SpringLanes {
   kernels::AlignedVector<double> multiplier;        // kg m, until the last renewal
   kernels::AlignedVector<double> unit;  // kg m: of a correction by one tolerance; padding: 0
   kernels::AlignedVector<double> rest;  // m, to which a spring gives way with this multiplier
-  kernels::AlignedVector<float> yield, held;
+  kernels::AlignedVector<float> compliance_share, held;
 
   void resize(std::size_t n);
   std::size_t bytes() const;

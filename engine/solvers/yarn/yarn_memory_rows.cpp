@@ -115,10 +115,10 @@ std::optional<YarnHome> find_home(const SlotRows& slots) {
   }
   if (most == 0) return std::nullopt;
   const Range rows = rows_of_family(layout, home.family);
-  const bool roomy = (rows.last - rows.first) * kLanes > tuning::kMostRoom * most;
+  const bool is_sparse = (rows.last - rows.first) * kLanes > tuning::kMostLanesPerParticle * most;
   const bool few =
       static_cast<double>(most) < tuning::kLeastWoven * static_cast<double>(model.particles);
-  if (roomy || few) return std::nullopt;
+  if (is_sparse || few) return std::nullopt;
   home.places.stride = kLanes;
   home.places.place.assign(model.slots(), kNoIndex);
   place_family(slots, rows, home);

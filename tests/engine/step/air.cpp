@@ -80,7 +80,7 @@ std::vector<Vec3> forces_of(const SceneDescription& scene, double h) {
   State state(model_of(scene),
               {.solver = Solver::gauss_seidel, .isa = resolve(Isa::automatic).value()});
   Team team;
-  find_resistance(state, state.model->damping.motion, h, team);
+  find_velocity_forces(state, state.model->damping.motion, h, team);
   std::vector<Vec3> forces;
   for (const std::uint32_t slot : state.model->ordering.slot_of) {
     forces.push_back(to_public(state.total_force[slot]));

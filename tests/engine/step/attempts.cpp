@@ -98,7 +98,7 @@ class Scripted final : public ConstraintSolver {
   }
 
   kernels::LoopResult solve_positions(const PositionTask& task, Team& team) override {
-    calls.push_back({task.h, s_.position, s_.velocity});
+    calls.push_back({task.dt_substep, s_.position, s_.velocity});
     if (!gives_up_(calls.size() - 1)) return s_.yarn->solve_positions(task, team);
     for (std::size_t i = 0; i < s_.model->slots(); ++i) task.x.set(i, {1e3, 1e3, 1e3});
     return {.iterations = iterations_of_a_failure, .failed = true};

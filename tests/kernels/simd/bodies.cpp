@@ -126,7 +126,7 @@ struct GrippedBlock {
       block.far[lane] = static_cast<float>(kFar * kFar);
       grips.pushed[lane] = lane % 3 == 0 ? 1e-4f : 0.f;
       grips.came_out[lane] = lane % 4 == 0 ? 2e-5f : 0.f;
-      grips.yields_by[lane] = lane % 6 == 1 ? 4e-4f : 0.f;
+      grips.thinned_by[lane] = lane % 6 == 1 ? 4e-4f : 0.f;
       grips.retreat[lane] = lane % 12 == 1 ? 1e-4f : 0.f;
       spared[lane] = lane % 6 == 1 ? 3e-4f : 0.f;
     }
@@ -185,7 +185,7 @@ int check_against_reference(const simd::Table& table, bool woven, const ShapeDes
     reference::Grip grip{
         .pushed = double{before.grips.pushed[lane]},
         .came_out = double{before.grips.came_out[lane]},
-        .yield = {double{before.grips.yields_by[lane]}, double{before.grips.retreat[lane]}}};
+        .thinning = {double{before.grips.thinned_by[lane]}, double{before.grips.retreat[lane]}}};
     const reference::Touch touch =
         find_touch(body.motion, start, x, double{before.block.radius[lane]});
     const reference::Gripped expected =

@@ -48,7 +48,7 @@ std::uint32_t visit_singles(const Rounding& rounding, KernelData& data, std::uin
 bool visit_spring(const Rounding& rounding, KernelData& data, std::uint32_t c, std::uint32_t a,
                   std::uint32_t b, bool rope, float threshold) {
   const float sum = data.impulse[c];
-  float change = rounding.fused(-data.yield[c], sum, data.error(rounding, c, a, b));
+  float change = rounding.fused(-data.compliance_share[c], sum, data.error(rounding, c, a, b));
   if (!(std::abs(change) > threshold)) return false;
   if (rope) change = std::max(change, -(data.held[c] + sum));
   if (change == 0) return false;

@@ -36,7 +36,7 @@ Settings settings_on(Backend backend, int substeps) {
 /// all alike.
 int solutions(BendingFrame& bending, const FramePlan& plan) {
   bending.begin(plan, 1);
-  const double give = SubstepFormula::of(Scheme::bdf2, 1).give(plan.h);
+  const double give = SubstepFormula::of(Scheme::bdf2, 1).give(plan.dt_substep);
   std::vector<int> at;
   std::vector<double> impulse;
   for (int k = 0; k < plan.substeps; ++k) {
@@ -64,8 +64,8 @@ TEST_CASE("solutions stand for all substeps of a frame, and soft cloth has few")
   const auto model = model_of(cantilever({}));
   BendingFrame bending(*model, settings_on(Backend::simd, 1));
   for (const int substeps : {1, 2, 3, 7, 8, 9, 31, 64}) {
-    CHECK(solutions(bending, {.h = 0.01, .substeps = substeps}) == substeps);
-    CHECK(solutions(bending, {.h = 1e-6, .substeps = substeps}) ==
+    CHECK(solutions(bending, {.dt_substep = 0.01, .substeps = substeps}) == substeps);
+    CHECK(solutions(bending, {.dt_substep = 1e-6, .substeps = substeps}) ==
           (substeps + tuning::kLongestGroup - 1) / tuning::kLongestGroup);
   }
 }
@@ -80,8 +80,8 @@ TEST_CASE("the stiffest particle bounds how many substeps have one solution") {
   // Of a strip of 8 segments of 25 mm. The row 1 4 6 4 1 has the end's half a mass in it.
   const double row = 16.42 * 1e-3 / (0.2 * std::pow(0.025, 4));
   const double h = std::sqrt(tuning::kBendingGroup / row) / 4.01;
-  CHECK(solutions(softer, {.h = h, .substeps = 64}) == 16);
-  CHECK(solutions(bending, {.h = h, .substeps = 64}) == 64);
+  CHECK(solutions(softer, {.dt_substep = h, .substeps = 64}) == 16);
+  CHECK(solutions(bending, {.dt_substep = h, .substeps = 64}) == 64);
 }
 
 TEST_CASE("what is solved in few substeps moves nearly as what is solved in each") {
@@ -153,7 +153,7 @@ SceneDescription slit_annulus() {
   return scene;
 }
 
-// Impulses that were as many substeps as their groups made an uneven one a jolt in each frame: the
+// Impulses that were as many substeps as their groups gave an uneven one a kick in each frame: the
 // plate had 25 J, of which the load explained 11.
 TEST_CASE("groups of unequal lengths gain no energy") {
   const SceneDescription scene = slit_annulus();

@@ -12,7 +12,7 @@
 #include "tests/support/sheets.h"
 #include "tests/support/vectors.h"
 
-namespace weft::test::engine_contact_squeezed {
+namespace weft::test::engine_contact_narrow_gaps {
 namespace {
 
 constexpr double kThickness = 1e-3;  // m, of each body
@@ -231,4 +231,4 @@ TEST_CASE("a hull that comes through the cloth between particles leaves them no 
 }
 
 }  // namespace
-}  // namespace weft::test::engine_contact_squeezed
+}  // namespace weft::test::engine_contact_narrow_gaps

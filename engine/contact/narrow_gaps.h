@@ -1,5 +1,5 @@
-/// Near pairs of particles that lie between bodies, one of which is a mesh: what these leave of
-/// room is shared when each substep begins (room.h).
+/// Near pairs of particles between two bodies, one of which is a mesh. When each substep begins the
+/// bodies share the gap between them (thickness_shares.h).
 #pragma once
 
 #include <array>
@@ -15,13 +15,13 @@
 
 namespace weft {
 
-class Squeeze {
+class NarrowGaps {
  public:
   /// Begins an interval.
   void begin(const ContactScene& scene, const Near& near);
-  /// Shares the room in a substep.
+  /// Shares the gaps in a substep.
   void share(const ContactScene& scene, const Near& near);
-  /// When an interval is over: particles and triangles that bodies which overlap have let in.
+  /// When an interval is over: takes in particles and triangles inside bodies that overlap.
   void take_in(const ContactScene& scene, const Near& near, Tangles& tangles) const;
   std::size_t bytes() const;
 
@@ -43,7 +43,7 @@ class Squeeze {
     FourPoints x{};
     std::array<double, 4> weight{};
     kernels::Vector at{};  // of the cloth, where both are nearest
-    Claim claim{};
+    BodyClearance clearance{};
     double radius = 0;  // m, of the body around its feature
     bool is_in_place = false;
   };
@@ -53,31 +53,32 @@ class Squeeze {
     auto operator<=>(const OfSlot&) const = default;
   };
   static Feature feature_of(const ContactScene& scene, const Pair& pair);
-  /// The direction of the claim of a feature of a body on a particle.
-  struct Asked {
+  /// The direction in which a feature of a body faces a particle.
+  struct Facing {
     std::uint32_t slot = 0, body = 0;
     kernels::Vector normal{};
   };
   Seen see(const ContactScene& scene, const NearPairs& near, std::size_t i) const;
-  /// The claim of the body of a pair on another place beside its feature.
-  static Claim claim_at(const ContactScene& scene, const Seen& of, kernels::Vector at);
-  /// The claim of a body of a closed form on the particles around a place.
-  static Claim claim_of_particles(const ContactScene& scene, std::uint32_t body, const Seen& here);
+  /// The clearance of another place beside the feature of a pair's body.
+  static BodyClearance clearance_at(const ContactScene& scene, const Seen& of, kernels::Vector at);
+  /// The clearance of the particles around a place from a body of a closed form.
+  static BodyClearance clearance_of_particles(const ContactScene& scene, std::uint32_t body,
+                                              const Seen& here);
   void find_slots(const ContactScene& scene, const Near& near);
   void find_pairs(const Near& near);
   void find_features(const ContactScene& scene, const Near& near);
   void share_at(const ContactScene& scene, std::uint32_t at);
   std::span<const OfSlot> beside(std::uint32_t slot) const;
-  void take_nearest(const Claim& claim);
+  void take_nearest(const BodyClearance& clearance);
 
-  std::vector<Place> pairs_;           // of particles between bodies
-  std::vector<Feature> features_;      // of bodies in these, ascending
-  std::vector<std::uint32_t> slots_;   // their particles, ascending
-  std::vector<OfSlot> beside_;         // by slots
-  std::vector<Seen> seen_;             // of pairs_
-  std::vector<std::uint32_t> last_;    // of features_: the last pair that asked it
-  std::vector<Claim> claims_;          // scratch
-  std::vector<Asked> asked_, at_one_;  // likewise
+  std::vector<Place> pairs_;               // of particles between bodies
+  std::vector<Feature> features_;          // of bodies in these, ascending
+  std::vector<std::uint32_t> slots_;       // their particles, ascending
+  std::vector<OfSlot> beside_;             // by slots
+  std::vector<Seen> seen_;                 // of pairs_
+  std::vector<std::uint32_t> last_;        // of features_: the last pair that asked it
+  std::vector<BodyClearance> clearances_;  // scratch
+  std::vector<Facing> facing_, at_one_;    // likewise
 };
 
 }  // namespace weft

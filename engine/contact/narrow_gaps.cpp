@@ -1,4 +1,4 @@
-#include "engine/contact/squeeze.h"
+#include "engine/contact/narrow_gaps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,24 +21,24 @@ bool is_closed_form(const ContactScene& scene, std::uint32_t body) {
 
 /// Particles with near pairs of two bodies, or of one and a body of a closed form, whose normals
 /// are against each other.
-void Squeeze::find_slots(const ContactScene& scene, const Near& near) {
-  asked_.clear();
+void NarrowGaps::find_slots(const ContactScene& scene, const Near& near) {
+  facing_.clear();
   for (const NearPairs& pairs : near) {
     for (std::size_t i = 0; i < pairs.list.size(); ++i) {
       const Pair& pair = pairs.list.pairs[i];
       const Vector normal = pair.outward() * pairs.normal(i);
       for (const std::uint32_t point : pairs.list.points(i)) {
         if (scene.points.is_of_cloth(point))
-          asked_.push_back({point, scene.points.later(pair).body, normal});
+          facing_.push_back({point, scene.points.later(pair).body, normal});
       }
     }
   }
-  std::ranges::sort(asked_, {}, &Asked::slot);
-  for (std::size_t first = 0, last = 0; first < asked_.size(); first = last) {
-    const std::uint32_t slot = asked_[first].slot;
+  std::ranges::sort(facing_, {}, &Facing::slot);
+  for (std::size_t first = 0, last = 0; first < facing_.size(); first = last) {
+    const std::uint32_t slot = facing_[first].slot;
     at_one_.clear();
-    for (; last < asked_.size() && asked_[last].slot == slot; ++last)
-      at_one_.push_back(asked_[last]);
+    for (; last < facing_.size() && facing_[last].slot == slot; ++last)
+      at_one_.push_back(facing_[last]);
     for (std::uint32_t body = 0; body < scene.clock.bodies().size(); ++body) {
       if (!is_closed_form(scene, body)) continue;
       const reference::BodyMotion& motion = scene.clock.motions()[body];
@@ -46,24 +46,24 @@ void Squeeze::find_slots(const ContactScene& scene, const Near& near) {
       at_one_.push_back({slot, body, motion.to.turned(gap_of(motion.solid, 0, place).normal)});
     }
     // By less than what counts in a substep: normals turn until the interval is over.
-    const auto are_against = [](const Asked& a, const Asked& b) {
+    const auto are_against = [](const Facing& a, const Facing& b) {
       return a.body != b.body && dot(a.normal, b.normal) < -tuning::kAgainst / 2;
     };
-    const bool is_between = std::ranges::any_of(at_one_, [&](const Asked& a) {
-      return std::ranges::any_of(at_one_, [&](const Asked& b) { return are_against(a, b); });
+    const bool is_between = std::ranges::any_of(at_one_, [&](const Facing& a) {
+      return std::ranges::any_of(at_one_, [&](const Facing& b) { return are_against(a, b); });
     });
     if (is_between) slots_.push_back(slot);
   }
 }
 
-Squeeze::Feature Squeeze::feature_of(const ContactScene& scene, const Pair& pair) {
+NarrowGaps::Feature NarrowGaps::feature_of(const ContactScene& scene, const Pair& pair) {
   return {.body = scene.points.later(pair).body,
           .index = pair.is_turned() ? pair.first : pair.second,
           .kind = pair.kind,
           .is_vertex = pair.is_turned()};
 }
 
-void Squeeze::find_features(const ContactScene& scene, const Near& near) {
+void NarrowGaps::find_features(const ContactScene& scene, const Near& near) {
   features_.clear();
   for (const Place& place : pairs_)
     features_.push_back(feature_of(scene, near[place.list].list.pairs[place.pair]));
@@ -76,7 +76,7 @@ void Squeeze::find_features(const ContactScene& scene, const Near& near) {
   }
 }
 
-void Squeeze::find_pairs(const Near& near) {
+void NarrowGaps::find_pairs(const Near& near) {
   for (std::uint32_t list = 0; list < kBodyLists; ++list) {
     for (std::uint32_t i = 0; i < near[list].list.size(); ++i) {
       const bool is_between = std::ranges::any_of(
@@ -87,7 +87,7 @@ void Squeeze::find_pairs(const Near& near) {
   }
 }
 
-void Squeeze::begin(const ContactScene& scene, const Near& near) {
+void NarrowGaps::begin(const ContactScene& scene, const Near& near) {
   pairs_.clear();
   slots_.clear();
   beside_.clear();
@@ -104,13 +104,14 @@ void Squeeze::begin(const ContactScene& scene, const Near& near) {
   std::ranges::sort(beside_);
 }
 
-std::span<const Squeeze::OfSlot> Squeeze::beside(std::uint32_t slot) const {
+std::span<const NarrowGaps::OfSlot> NarrowGaps::beside(std::uint32_t slot) const {
   const auto first = std::ranges::lower_bound(beside_, slot, {}, &OfSlot::slot);
   const auto last = std::ranges::upper_bound(beside_, slot, {}, &OfSlot::slot);
   return {beside_.data() + (first - beside_.begin()), static_cast<std::size_t>(last - first)};
 }
 
-Squeeze::Seen Squeeze::see(const ContactScene& scene, const NearPairs& near, std::size_t i) const {
+NarrowGaps::Seen NarrowGaps::see(const ContactScene& scene, const NearPairs& near,
+                                 std::size_t i) const {
   const Pair& pair = near.list.pairs[i];
   Seen seen{.points = near.list.points(i)};
   for (std::size_t k = 0; k < 4; ++k) seen.x[k] = scene.start(seen.points[k]);
@@ -121,17 +122,17 @@ Squeeze::Seen Squeeze::see(const ContactScene& scene, const NearPairs& near, std
   const Vector n = l > kTouching ? (sign / l) * found.r : side;
   const ContactSurface& later = scene.points.later(pair);
   seen.radius = later.radius_at(seen.points, found.weight);
-  seen.claim = {.body = later.body,
-                .normal = pair.outward() * n,
-                .distance = sign * l - seen.radius,
-                .thickness = near.states[i].thickness - later.largest_radius()};
+  seen.clearance = {.body = later.body,
+                    .normal = pair.outward() * n,
+                    .distance = sign * l - seen.radius,
+                    .thickness = near.states[i].thickness - later.largest_radius()};
   for (std::size_t k = 0; k < 4; ++k) {
     const double weight = seen.weight[k] = std::abs(found.weight[k]);
     if (scene.points.is_of_cloth(seen.points[k])) {
       seen.at = seen.at + weight * seen.x[k];
     } else {
       const Vector way = scene.present[seen.points[k]].x - seen.x[k];
-      seen.claim.velocity = seen.claim.velocity + (weight / scene.clock.h()) * way;
+      seen.clearance.velocity = seen.clearance.velocity + (weight / scene.clock.dt_substep()) * way;
     }
   }
   return seen;
@@ -150,57 +151,58 @@ Vector from_nearest(Vector at, std::span<const Vector> corners) {
 
 }  // namespace
 
-Claim Squeeze::claim_at(const ContactScene& scene, const Seen& of, Vector at) {
+BodyClearance NarrowGaps::clearance_at(const ContactScene& scene, const Seen& of, Vector at) {
   std::array<Vector, 3> corners{};
   std::size_t count = 0;
   for (std::size_t k = 0; k < 4; ++k) {
     if (!scene.points.is_of_cloth(of.points[k])) corners[count++] = of.x[k];
   }
   const Vector r = from_nearest(at, std::span(corners).first(count));
-  const double l = length(r), sign = dot(r, of.claim.normal) >= 0 ? 1 : -1;
-  Claim claim = of.claim;
-  claim.distance = sign * l - of.radius;
-  if (l > kTouching) claim.normal = (sign / l) * r;
-  return claim;
+  const double l = length(r), sign = dot(r, of.clearance.normal) >= 0 ? 1 : -1;
+  BodyClearance clearance = of.clearance;
+  clearance.distance = sign * l - of.radius;
+  if (l > kTouching) clearance.normal = (sign / l) * r;
+  return clearance;
 }
 
-/// The claim on particles alone: between them a closed form may be through the cloth.
-Claim Squeeze::claim_of_particles(const ContactScene& scene, std::uint32_t body, const Seen& here) {
-  Claim claim = claim_of(scene.clock, body, here.at, 0);
-  claim.distance = 0;
+/// It is the clearance of particles alone: between them a closed form may be through the cloth.
+BodyClearance NarrowGaps::clearance_of_particles(const ContactScene& scene, std::uint32_t body,
+                                                 const Seen& here) {
+  BodyClearance clearance = clearance_of(scene.clock, body, here.at, 0);
+  clearance.distance = 0;
   for (std::size_t k = 0; k < 4; ++k) {
     const std::uint32_t point = here.points[k];
     if (!scene.points.is_of_cloth(point) || here.weight[k] == 0) continue;
     const double radius = scene.model.has_spheres() ? scene.model.radius[point] : 0;
-    claim.distance += here.weight[k] * claim_of(scene.clock, body, here.x[k], 0).distance;
-    claim.thickness += here.weight[k] * radius;
+    clearance.distance += here.weight[k] * clearance_of(scene.clock, body, here.x[k], 0).distance;
+    clearance.thickness += here.weight[k] * radius;
   }
-  return claim;
+  return clearance;
 }
 
-/// The claim of the nearest feature of a body counts.
-void Squeeze::take_nearest(const Claim& claim) {
-  for (Claim& known : claims_) {
-    if (known.body != claim.body) continue;
-    if (std::abs(claim.distance) < std::abs(known.distance)) known = claim;
+/// The clearance of the nearest feature of a body counts.
+void NarrowGaps::take_nearest(const BodyClearance& clearance) {
+  for (BodyClearance& known : clearances_) {
+    if (known.body != clearance.body) continue;
+    if (std::abs(clearance.distance) < std::abs(known.distance)) known = clearance;
     return;
   }
-  claims_.push_back(claim);
+  clearances_.push_back(clearance);
 }
 
-void Squeeze::share(const ContactScene& scene, const Near& near) {
+void NarrowGaps::share(const ContactScene& scene, const Near& near) {
   seen_.clear();
   for (const Place& place : pairs_) seen_.push_back(see(scene, near[place.list], place.pair));
   last_.assign(features_.size(), kNoIndex);
   for (std::uint32_t i = 0; i < seen_.size(); ++i) {
-    if (seen_[i].is_in_place && seen_[i].claim.distance < 2 * scene.points.largest_thickness())
+    if (seen_[i].is_in_place && seen_[i].clearance.distance < 2 * scene.points.largest_thickness())
       share_at(scene, i);
   }
 }
 
 /// Each feature of another body is asked once, though it has pairs with each feature of the cloth
 /// around the place.
-void Squeeze::share_at(const ContactScene& scene, std::uint32_t at) {
+void NarrowGaps::share_at(const ContactScene& scene, std::uint32_t at) {
   const Seen& here = seen_[at];
   std::array<std::uint32_t, 3> slots{};
   std::size_t count = 0;
@@ -208,27 +210,29 @@ void Squeeze::share_at(const ContactScene& scene, std::uint32_t at) {
     if (scene.points.is_of_cloth(point)) slots[count++] = point;
   }
   const std::span<const std::uint32_t> of_cloth = std::span(slots).first(count);
-  claims_.clear();
+  clearances_.clear();
   for (const std::uint32_t slot : of_cloth) {
     for (const OfSlot& other : beside(slot)) {
       std::uint32_t& last = last_[other.feature];
       if (last == at) continue;
       const Seen& there = seen_[other.pair];
-      if (there.claim.body == here.claim.body ||
-          dot(there.claim.normal, here.claim.normal) >= -tuning::kAgainst)
+      if (there.clearance.body == here.clearance.body ||
+          dot(there.clearance.normal, here.clearance.normal) >= -tuning::kAgainst)
         continue;
       last = at;
-      take_nearest(claim_at(scene, there, here.at));
+      take_nearest(clearance_at(scene, there, here.at));
     }
   }
   for (std::uint32_t body = 0; body < scene.clock.bodies().size(); ++body) {
-    if (is_closed_form(scene, body)) claims_.push_back(claim_of_particles(scene, body, here));
+    if (is_closed_form(scene, body))
+      clearances_.push_back(clearance_of_particles(scene, body, here));
   }
-  for (const Claim& other : claims_) scene.room.share(here.claim, other, scene.clock.h(), of_cloth);
+  for (const BodyClearance& other : clearances_)
+    scene.shares.share(here.clearance, other, scene.clock.dt_substep(), of_cloth);
 }
 
-void Squeeze::take_in(const ContactScene& scene, const Near& near, Tangles& tangles) const {
-  if (!scene.room.any()) return;
+void NarrowGaps::take_in(const ContactScene& scene, const Near& near, Tangles& tangles) const {
+  if (!scene.shares.any()) return;
   for (const Place& place : pairs_) {
     const NearPairs& pairs = near[place.list];
     const Pair& pair = pairs.list.pairs[place.pair];
@@ -237,15 +241,15 @@ void Squeeze::take_in(const ContactScene& scene, const Near& near, Tangles& tang
     const auto points = pairs.list.points(place.pair);
     const bool lets_in = std::ranges::any_of(points, [&](std::uint32_t point) {
       return scene.points.is_of_cloth(point) &&
-             scene.room.of(point, scene.points.later(pair).body).by > thickness;
+             scene.shares.of(point, scene.points.later(pair).body).by > thickness;
     });
     if (lets_in && pairs.is_under(place.pair)) tangles.let_in(scene.points, pair);
   }
 }
 
-std::size_t Squeeze::bytes() const {
+std::size_t NarrowGaps::bytes() const {
   return bytes_of(pairs_) + bytes_of(features_) + bytes_of(slots_) + bytes_of(beside_) +
-         bytes_of(seen_) + bytes_of(last_) + bytes_of(claims_) + bytes_of(asked_) +
+         bytes_of(seen_) + bytes_of(last_) + bytes_of(clearances_) + bytes_of(facing_) +
          bytes_of(at_one_);
 }
 
