@@ -22,7 +22,7 @@
 ///   auto report = cloth.step(1.0 / 60);
 ///   weft::Pose where = cloth.body_pose(id.value()).value();
 ///
-/// It falls and turns as a rigid body. The momentum that it gains from the cloth, the cloth loses.
+/// It falls and turns as a rigid body. The cloth loses the momentum that the body gains from it.
 /// Such a body collides with particles of the cloth alone, fixed ones included: not with other
 /// bodies. It has no drag. A body much heavier than the cloth under it needs short substeps. A
 /// program with a physics engine calls move_body instead, and applies body_load to its own bodies.

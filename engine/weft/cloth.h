@@ -255,8 +255,8 @@ class WEFT_API Cloth {
   /// ones stay.
   Result<void> scale_anchors(double scale);
 
-  /// Releases seams, by their numbers in the description: from the next step on they hold nothing,
-  /// nor do open ones pull. Edges and faces at the two particles still do not collide
+  /// Releases seams, by their numbers in the description: from the next step on they have no
+  /// effect, open or closed. Edges and faces at the two particles still do not collide
   /// (SelfContact). Seams that were released already stay so. On an error none is released.
   Result<void> release_seams(std::span<const std::uint32_t> seams);
   /// Closes seams that were released: each pulls its particles together again, from where they are,

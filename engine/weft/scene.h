@@ -57,9 +57,9 @@ struct Constraint {
 /// that relieves the others: a crack grows by one edge per step.
 ///
 /// constraint: its strength becomes 0. Ropes and threads break in this way.
-/// seam: its strength becomes 0. Faces and edges at its two particles do not collide with each
-/// other
-///   until they are apart (SelfContact). Then it is gone, unless an unbroken seam follows it.
+/// seam: its strength becomes 0. Faces and edges at one of its two particles do not collide with
+///   those at the other until they are apart (SelfContact).
+///   Then it is gone, unless an unbroken seam follows it.
 /// anchor: its particle is released, as by Cloth::limit_anchor with an infinite distance.
 /// sheet: one of its particles becomes two, each with the triangles, constraints and the mass of
 ///   its side. The crack runs along edges of `surface`, as nearly across the largest tension as

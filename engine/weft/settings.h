@@ -125,9 +125,9 @@ struct Settings {
   /// sweep per substep. The corrections after that take at most the time of 6 further sweeps per
   /// substep, or of automatic substeps if that is longer; max_iterations lowers this bound. A
   /// quarter of the time of contacts with meshes during these corrections counts towards the bound.
-  /// The search for contacts and their verification do not count. Whether a given number is
-  /// enough for the load of fabric at rest, only StepReport::law_error tells. With other solvers
-  /// each substep is solved to the tolerances.
+  /// The search for contacts and their verification do not count. Only StepReport::law_error tells
+  /// whether a given number is enough for the load of fabric at rest. With other solvers each
+  /// substep is solved to the tolerances.
   ///
   /// A chosen number: with small_steps it follows in closed form, up to 1024. With other solvers it
   /// follows from the motion (rattle takes up to 2.5 times as many as paper) and, with yarn, from
