@@ -102,6 +102,9 @@ class Bodies {
     Vec3 force{}, moment{};  // by the caller
     FreeMotion motion{};     // with a mass
 
+    /// Whether it is there and moves by itself.
+    bool is_free() const { return shape != nullptr && is_on && mass.mass > 0; }
+
     friend void visit_fields(Is<Entry> auto& entry, auto& archive) {
       auto& [shape, from, to, vertices_from, vertices_to, thickness, friction, is_on, moves,
              deforms, moved, load, mass, force, moment, motion] = entry;
@@ -110,7 +113,6 @@ class Bodies {
     }
   };
   static const MeshShape* mesh_of(const Entry& entry, const Gaps& gaps);
-  static FreeBody free_body(const Entry& entry);
   static void put(Entry& entry, const Pose& pose);
 
   std::vector<Entry> bodies_;  // by id

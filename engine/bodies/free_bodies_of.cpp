@@ -53,7 +53,7 @@ std::span<const FreeBody> Bodies::free(double friction_of_cloth) {
   std::size_t count = 0;
   for (std::uint32_t id = 0; id < bodies_.size(); ++id) {
     const Entry& entry = bodies_[id];
-    if (entry.shape == nullptr || !entry.is_on || !has_mass(id)) continue;
+    if (!entry.is_free()) continue;
     if (count == free_.size()) free_.emplace_back();
     FreeBody& body = free_[count++];
     body.id = id;
@@ -81,7 +81,7 @@ double Bodies::fastest() const {
   double fastest = 0;
   for (std::uint32_t id = 0; id < bodies_.size(); ++id) {
     const Entry& entry = bodies_[id];
-    if (entry.shape == nullptr || !entry.is_on || !has_mass(id)) continue;
+    if (!entry.is_free()) continue;
     double reach = 0;
     for (const Vector corner : entry.shape->corners())
       reach = std::max(reach, length(corner - to_internal(entry.mass.centre)));
@@ -96,7 +96,7 @@ double Bodies::bring_to_rest() {
   double energy = 0;
   for (std::uint32_t id = 0; id < bodies_.size(); ++id) {
     Entry& entry = bodies_[id];
-    if (entry.shape == nullptr || !entry.is_on || !has_mass(id)) continue;
+    if (!entry.is_free()) continue;
     FreeMotion& motion = entry.motion;
     energy += 0.5 * (entry.mass.mass * dot(motion.velocity, motion.velocity) +
                      dot(motion.momentum, to_internal(velocity(id).angular)));
