@@ -296,6 +296,7 @@ Remains end_frame(State& s, Frame& frame, const FramePlan& plan, double dt_frame
   if (s.settings.iterations == 0)
     remains.lost_energy = guard_springs(
         s, remains.lost_energy, released - std::max(0.0, frame.yielded()), dt_frame, change);
+  s.body_report.work += s.small_steps->free_bodies().slowed();
   if (pins_move(s)) trial.pin_work = work_of(motion_of_pins(s, dt_frame), s, dt_frame);
   trial.energy_lost = trial.pin_work + released - 0.5 * change.gain;
   if (!takes_over_in(s)) trial.motion_error = s.small_steps->motion_error();

@@ -150,7 +150,7 @@ struct StepReport {
   /// work of the rigid motion nearest to theirs. Jumps do no work. Impulses of fixed spheres count
   /// as those of pins; moved spheres are left out.
   double pin_work = 0;
-  double body_work = 0;      ///< J, work of moving bodies on the cloth in this step
+  double body_work = 0;      ///< J, work of moving bodies on the cloth; those with a mass lose it
   double friction_work = 0;  ///< J, lost to friction with bodies; out of tolerance <= energy_lost
   std::uint32_t failed_particle = kNoIndex;  ///< with non_finite, non_finite_input: one of them
   std::uint32_t passed_particle = kNoIndex;  ///< with passed_through: one of them

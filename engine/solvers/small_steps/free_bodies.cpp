@@ -16,7 +16,7 @@ void FreeBodies::begin(std::span<const FreeBody> bodies, const FreeFrame& frame)
   substeps_left_ = frame.substeps;
   substeps_to_search_ = 0;
   dt_before_ = frame.has_past ? frame.dt_of_past : frame.dt_substep;
-  friction_ = 0;
+  friction_ = slowed_ = 0;
   is_under_way_ = false;
   is_first_search_ = true;
   bodies_.assign(bodies.begin(), bodies.end());

@@ -76,6 +76,8 @@ class FreeBodies {
   /// Makes that motion slower by the factor, and returns J, by how much the kinetic energy falls.
   template <class Velocity>
   double slow_down(Velocity&& velocity, kernels::Vector spin, double factor);
+  /// J, all falls since the frame began.
+  double slowed() const { return slowed_; }
   /// Where the frame has ended.
   std::span<const FreeBody> states();
   std::size_t bytes() const;
@@ -124,7 +126,7 @@ class FreeBodies {
   std::vector<FreeContact> contacts_, found_;  // by slots, then by bodies
   std::vector<double> ways_;                   // scratch
   FreeContactSweep sweep_;
-  double friction_ = 0;  // J
+  double friction_ = 0, slowed_ = 0;  // J
 };
 
 template <class Points>
@@ -205,6 +207,7 @@ double FreeBodies::slow_down(Velocity&& velocity, kernels::Vector spin, double f
     motion.momentum = carried + factor * (motion.momentum - carried);
     fall -= kinetic(body, motion.velocity, motion.momentum);
   }
+  slowed_ += fall;
   return fall;
 }
 

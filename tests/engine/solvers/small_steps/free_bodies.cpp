@@ -366,7 +366,9 @@ TEST_CASE("cloth that is drawn away under a box takes it along by Coulomb's law"
   }
 }
 
-TEST_CASE("what is drawn by chance gains no energy and is finite, and `converged` means apart") {
+TEST_CASE(
+    "what is drawn by chance gains no energy and is finite, `converged` means apart, and the work "
+    "of bodies is what they lose") {
   for_each_case(
       12, [](std::uint32_t seed) { return seed; },
       [](std::uint32_t seed) {
@@ -388,15 +390,20 @@ TEST_CASE("what is drawn by chance gains no energy and is finite, and `converged
               add_free(cloth, shapes[(seed + static_cast<std::uint32_t>(i)) % 3], mass,
                        {.position = at, .rotation = turn({0, 0, 1}, random.between(-2, 2))}));
         }
-        const auto energy = [&] {
-          double sum = cloth.energy().kinetic + cloth.energy().potential;
+        const auto of_bodies = [&] {
+          double sum = 0;
           for (const Free& body : bodies) sum += body.energy(cloth, kG);
           return sum;
         };
+        const auto energy = [&] {
+          return cloth.energy().kinetic + cloth.energy().potential + of_bodies();
+        };
         const double before = energy(), weighs = (mass * 2 + cloth_mass(scene)) * kG;
         for (int k = 0; k < static_cast<int>(rate); ++k) {
+          const double had = of_bodies();
           const StepReport report = step(cloth, 1. / rate);
           REQUIRE(committed(report.status));
+          CHECK(std::abs(report.body_work - (had - of_bodies())) < 1e-9 * weighs);
           CHECK(energy() < before + 1e-3 * weighs);
           if (report.status == Status::converged) CHECK(report.max_penetration <= 1e-4);
         }
