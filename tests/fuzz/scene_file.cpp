@@ -49,10 +49,12 @@ void run(const SceneFile& file, Cloth& cloth) {
   }
   step_twice(cloth);
   const SceneDescription present = tools::present_scene(file.description, cloth);
+  std::vector<tools::SceneBody> present_bodies = tools::present_bodies(file.bodies, 0.1);
+  tools::take_free_bodies(cloth, present_bodies);
   const SceneFile later{present,
                         tools::present_moves(file.moves, file.description, 0.1),
                         file.faces,
-                        tools::present_bodies(file.bodies, 0.1),
+                        present_bodies,
                         tools::present_events(file.events, 0.1),
                         tools::present_scale(file.rest_scale, 0.1)};
   const auto read = tools::parse_scene(scene_text_of(later), kNoFolder);

@@ -16,6 +16,14 @@ Rotation quaternion(Vec3 r) {
   return {part * r.x, part * r.y, part * r.z, std::cos(angle / 2)};
 }
 
+/// By the shorter way around.
+Vec3 rotation_vector(const Rotation& q) {
+  const double sine = std::hypot(q.x, q.y, q.z);
+  const double part = sine > 0 ? 2 * std::atan2(sine, std::abs(q.w)) / sine : 2;
+  const double turn = std::copysign(part, q.w);
+  return {turn * q.x, turn * q.y, turn * q.z};
+}
+
 /// First b, then a.
 Rotation product(const Rotation& a, const Rotation& b) {
   return {
@@ -63,6 +71,14 @@ Pose pose_at(const SceneBody& body, double time) {
           product(quaternion(rotation_at(*body.move, time)), rotation)};
 }
 
+Pose pose_in(const Cloth& cloth, std::uint32_t id, const SceneBody& body, double time) {
+  return body.mass ? cloth.body_pose(id).value() : pose_at(body, time);
+}
+
+Vec3 centre_of_mass(const SceneBody& body, const Pose& pose) {
+  return placed(pose, body.mass->centre);
+}
+
 std::vector<Vec3> vertices_at(const SceneBody& body, double time) {
   if (!body.vertex_move) return std::get<TriangleMesh>(body.shape).vertices;
   const auto& [times, vertices] = *body.vertex_move;
@@ -103,6 +119,17 @@ std::vector<SceneBody> present_bodies(std::span<const SceneBody> bodies, double 
   return present;
 }
 
+void take_free_bodies(const Cloth& cloth, std::vector<SceneBody>& bodies) {
+  for (std::uint32_t id = 0; id < bodies.size(); ++id) {
+    SceneBody& body = bodies[id];
+    if (!body.mass) continue;
+    const Pose pose = cloth.body_pose(id).value();
+    body.position = pose.position;
+    body.rotation = rotation_vector(pose.rotation);
+    body.velocity = cloth.body_velocity(id).value();
+  }
+}
+
 Result<MovedBodies> MovedBodies::add(std::span<const SceneBody> bodies, Cloth& cloth) {
   MovedBodies added;
   added.bodies_ = bodies;
@@ -115,8 +142,13 @@ Result<MovedBodies> MovedBodies::add(std::span<const SceneBody> bodies, Cloth& c
     const auto id = cloth.add_body({.shape = shape.value(),
                                     .pose = pose_at(bodies[i], 0),
                                     .thickness = bodies[i].thickness,
-                                    .friction = bodies[i].friction});
+                                    .friction = bodies[i].friction,
+                                    .mass = bodies[i].mass});
     if (!id) return refused(id.error());
+    if (bodies[i].mass) {
+      if (auto set = cloth.set_body_velocity(id.value(), bodies[i].velocity); !set)
+        return refused(set.error());
+    }
     added.ids_.push_back(id.value());
   }
   return added;

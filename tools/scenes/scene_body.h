@@ -17,7 +17,8 @@ struct VertexMove {
   std::vector<std::vector<Vec3>> vertices = {};  ///< one list per time, of all vertices
 };
 
-/// It begins at a pose and moves as pins do: x goes to where place_at() takes it.
+/// It begins at a pose and moves as pins do: x goes to where place_at() takes it. One with a mass
+/// moves by itself instead.
 struct SceneBody {
   ShapeDescription shape;
   Vec3 position{};
@@ -26,6 +27,8 @@ struct SceneBody {
   double friction = Body{}.friction;
   std::optional<PinMove> move = {};            ///< of no particles
   std::optional<VertexMove> vertex_move = {};  ///< of a TriangleMesh alone
+  std::optional<BodyMass> mass = {};           ///< of a body that has no move
+  BodyVelocity velocity = {};                  ///< with a mass: at the start
 };
 
 }  // namespace weft::tools

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "engine/bodies/body_mass.h"
+#include "engine/validation.h"
 #include "tools/program/files/json_reading.h"
 #include "tools/program/formats/body_files.h"
 
@@ -148,17 +150,70 @@ ShapeDescription read_shape(Entry& entry, const std::string& folder) {
   refuse(entry.place("shape"), "plane, sphere, capsule, box, hull or mesh", name);
 }
 
+/// One that is full, of a mass in kg.
+BodyMass full_body(const BodyShape& shape, double mass, const std::string& place) {
+  const auto of_one = mass_of(shape, 1);
+  if (!of_one) throw Refused{fmt::format("{}.{}", place, of_one.error())};
+  if (auto r = validate_positive("mass", mass); !r)
+    throw Refused{fmt::format("{}.{}", place, r.error())};
+  BodyMass full = of_one.value();
+  const double times = mass / full.mass;
+  for (double& element : full.inertia) element *= times;
+  full.mass = mass;
+  return full;
+}
+
+/// place: of the body.
+BodyMass read_spread_mass(const Json& json, const BodyShape& shape, const std::string& place) {
+  Entry entry(json, within(place, "mass"));
+  BodyMass mass = full_body(shape, entry.number("mass"), place);
+  mass.centre = entry.vector("centre", mass.centre);
+  const auto inertia = read_array(entry.needed("inertia"), entry.place("inertia"), read_number);
+  if (inertia.size() != mass.inertia.size())
+    refuse(entry.place("inertia"), "xx, yy, zz, yz, zx and xy", json["inertia"]);
+  std::ranges::copy(inertia, mass.inertia.begin());
+  entry.check_keys();
+  return mass;
+}
+
+/// The mass of a body that moves by itself, and its velocity.
+void read_mass(Entry& entry, const BodyShape& shape, const std::string& place, SceneBody& body) {
+  const bool has_mass = entry.has("mass"), has_density = entry.has("density");
+  if (!has_mass && !has_density) {
+    for (const char* key : {"velocity", "spin"}) {
+      if (entry.has(key)) throw Refused{entry.place(key) + ": is of a body with a mass alone"};
+    }
+    return;
+  }
+  if (has_mass && has_density)
+    throw Refused{fmt::format("{}: expected one of the keys 'mass' and 'density'", place)};
+  if (body.move) throw Refused{entry.place("moves") + ": a body with a mass moves by itself"};
+  if (has_density) {
+    const auto mass = mass_of(shape, entry.number("density"));
+    if (!mass) throw Refused{fmt::format("{}.{}", place, mass.error())};
+    body.mass = mass.value();
+  } else if (const Json& mass = entry.needed("mass"); mass.is_object()) {
+    body.mass = read_spread_mass(mass, shape, place);
+  } else {
+    body.mass = full_body(shape, entry.number("mass"), place);
+  }
+  if (const auto valid = validate(*body.mass); !valid)
+    throw Refused{fmt::format("{}.{}", place, valid.error())};
+  body.velocity = {entry.vector("velocity", {}), entry.vector("spin", {})};
+}
+
 SceneBody read_body(const Json& json, const std::string& place, const std::string& folder) {
   Entry entry(json, place);
   SceneBody body;
   body.shape = read_shape(entry, folder);
-  if (const auto built = build_shape(body.shape); !built)
-    throw Refused{fmt::format("{}.{}", place, built.error())};
+  const auto built = build_shape(body.shape);
+  if (!built) throw Refused{fmt::format("{}.{}", place, built.error())};
   body.position = entry.vector("position", {});
   body.rotation = entry.vector("rotation", {});
   body.thickness = entry.number("thickness", body.thickness);
   body.friction = entry.number("friction", body.friction);
   if (entry.has("moves")) body.move = read_move(json["moves"], entry.place("moves"));
+  read_mass(entry, *built.value(), place, body);
   const auto* mesh = std::get_if<TriangleMesh>(&body.shape);
   if (mesh && entry.has("vertex_moves")) {
     body.vertex_move =
@@ -215,6 +270,13 @@ std::string body_row(const SceneBody& body) {
                      {"translations", rows(body.move->translations)},
                      {"about", row(body.move->about)}};
     if (!body.move->rotations.empty()) json["moves"]["rotations"] = rows(body.move->rotations);
+  }
+  if (body.mass) {
+    json["mass"] = {{"mass", body.mass->mass},
+                    {"centre", row(body.mass->centre)},
+                    {"inertia", body.mass->inertia}};
+    json["velocity"] = row(body.velocity.linear);
+    json["spin"] = row(body.velocity.angular);
   }
   if (body.vertex_move) {
     Json& moves = json["vertex_moves"];

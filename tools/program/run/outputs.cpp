@@ -86,9 +86,11 @@ std::string Outputs::text(Format format, const Cloth& cloth, double elapsed) con
   RestScale rest_scale = present_scale(source_->rest_scale, elapsed);
   if (cloth.model()->tears > 0)  // the scene is as torn, and has its present shape at rest
     rest_scale = scale_over(rest_scale, scale_at(source_->rest_scale, elapsed));
+  std::vector<SceneBody> bodies = present_bodies(source_->bodies, elapsed);
+  take_free_bodies(cloth, bodies);
   return scene_text(present_scene(scene, cloth), present_moves(source_->moves, scene, elapsed),
-                    particle_faces(source_->mesh), present_bodies(source_->bodies, elapsed),
-                    present_events(source_->events, elapsed), rest_scale);
+                    particle_faces(source_->mesh), bodies, present_events(source_->events, elapsed),
+                    rest_scale);
 }
 
 void Outputs::add_frame(const Cloth& cloth, const StepReport& report, int frame, double elapsed) {

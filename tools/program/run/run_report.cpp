@@ -228,6 +228,26 @@ std::string held_text(const StepReport& total) {
   return text;
 }
 
+Json free_body_json(const FreeBodyEnd& end) {
+  const auto& [p, r] = end.pose;
+  return {{"body", end.body},
+          {"position", {p.x, p.y, p.z}},
+          {"rotation", {r.x, r.y, r.z, r.w}},
+          {"centre", {end.centre.x, end.centre.y, end.centre.z}}};
+}
+
+/// When the run ends.
+std::string free_bodies_text(const RunReport& report) {
+  const auto height = [&](const FreeBodyEnd& end) { return end.centre.*report.plan.up; };
+  const auto& ends = report.summary.free_bodies;
+  const auto [least, most] = std::ranges::minmax(ends, {}, height);
+  if (ends.size() == 1)
+    return fmt::format("1 with a mass, its centre at {} {:.4g} m in the end", axis(report.plan),
+                       height(least));
+  return fmt::format("{} with a mass, their centres at {} {:.4g} m to {:.4g} m in the end",
+                     ends.size(), axis(report.plan), height(least), height(most));
+}
+
 /// Of the cloth with itself.
 std::string layers_text(const StepReport& total) {
   return fmt::format("{} at most, {} tangled in the last frame",
@@ -304,6 +324,8 @@ Json to_json(const RunReport& report) {
     json["max_weft"] = summary.fabric->weft;
     json["max_shear"] = summary.fabric->shear;
   }
+  for (const FreeBodyEnd& end : summary.free_bodies)
+    json["free_bodies"].push_back(free_body_json(end));
   if (report.mesh) add_mesh(*report.mesh, json);
   return json;
 }
@@ -368,6 +390,7 @@ std::string to_table(const RunReport& report) {
                               counted(total.body_contacts, "contact"), total.max_penetration,
                               total.friction_work, total.body_work));
   }
+  if (!summary.free_bodies.empty()) row("", free_bodies_text(report));
   if (report.plan.touches_itself) row("layers", layers_text(total));
   if (report.plan.touches_itself || !report.plan.bodies.empty()) row("", times_text(summary));
   if (const auto crossed = crossings_text(summary); !crossed.empty()) row("crossings", crossed);

@@ -131,6 +131,17 @@ void name_what_crosses(RunSummary& summary, const StepReport& report, const Clot
   if (miss.crossing.count == 0 && miss.inside == 0) miss.inside = report.intersecting;
 }
 
+std::vector<FreeBodyEnd> ends_of_free_bodies(const Cloth& cloth,
+                                             const std::vector<SceneBody>& bodies) {
+  std::vector<FreeBodyEnd> ends;
+  for (std::uint32_t id = 0; id < bodies.size(); ++id) {
+    if (!bodies[id].mass) continue;
+    const Pose pose = cloth.body_pose(id).value();
+    ends.push_back({id, pose, centre_of_mass(bodies[id], pose)});
+  }
+  return ends;
+}
+
 void finish(RunSummary& summary, const Errors& errors, const Cloth& cloth) {
   const double frames = std::max(summary.frames, 1);
   summary.mean_max_strain = errors.strain_sum / frames;
@@ -247,6 +258,7 @@ Result<RunSummary> run_once(const std::shared_ptr<const Model>& model, const Set
   if (auto ended = end_recording(cloth, plan); !ended) return Error{ended.error()};
   summary.finished_runs = summary.stopped ? 0 : 1;
   finish(summary, errors, cloth);
+  summary.free_bodies = ends_of_free_bodies(cloth, plan.bodies);
   return summary;
 }
 

@@ -80,6 +80,13 @@ struct Miss {
 /// a seam is late, or held particles exclude a constraint, it names these.
 std::string text(const Miss& miss);
 
+/// A body with a mass when the run ends.
+struct FreeBodyEnd {
+  std::uint32_t body = 0;  ///< by its place among all bodies
+  Pose pose{};
+  Vec3 centre{};  ///< m, of mass
+};
+
 /// All figures of a run. Counts and seconds are sums over its frames; strains are fractions,
 /// recomputed from the positions after every frame.
 struct RunSummary {
@@ -122,7 +129,8 @@ struct RunSummary {
   double lowest = 0;             ///< m along RunPlan::up, over all frames and particles
 
   std::uint64_t state_hash = 0;  ///< of the last frame
-  std::size_t bytes = 0;         ///< of the cloth and its model
+  std::vector<FreeBodyEnd> free_bodies;
+  std::size_t bytes = 0;  ///< of the cloth and its model
   ModelInfo model;
 
   bool reached_tolerance() const { return !first_miss; }

@@ -144,7 +144,7 @@ MotionRecorder::MotionRecorder(const SceneSource& source, std::shared_ptr<const 
       stretch_(source.description, source.mesh.cells),
       last_stretch_(source.description.positions.size()),
       figures_(std::make_unique<Figures>()) {
-  add_sample(source.description.positions, 0);
+  add_sample(source.description.positions, 0, nullptr);
   append_integers(contact_bytes_, std::array{0});
   figures_->add("time", 0.0);
   ++figures_->samples;
@@ -155,7 +155,7 @@ MotionRecorder::~MotionRecorder() = default;
 
 void MotionRecorder::add_frame(const Cloth& cloth, const StepReport& report, double elapsed) {
   take_splits(cloth);
-  add_sample(particle_positions(cloth), elapsed);
+  add_sample(particle_positions(cloth), elapsed, &cloth);
   add_contacts(cloth);
   figures_->add("time", elapsed);
   figures_->add(report);
@@ -164,14 +164,15 @@ void MotionRecorder::add_frame(const Cloth& cloth, const StepReport& report, dou
   settings_ = cloth.settings();
 }
 
-void MotionRecorder::add_sample(const std::vector<Vec3>& particles, double elapsed) {
+void MotionRecorder::add_sample(const std::vector<Vec3>& particles, double elapsed,
+                                const Cloth* cloth) {
   const std::size_t described = source_->description.positions.size();
   const std::vector<double> stretch = stretch_(std::span(particles).first(described));
   if (model_->may_tear)
     kept_.push_back({particles, stretch});
   else
     add_particles(particles, stretch);
-  bodies_.add_sample(particles, elapsed);
+  bodies_.add_sample(particles, elapsed, cloth);
 }
 
 void MotionRecorder::add_particles(const std::vector<Vec3>& particles,

@@ -39,7 +39,8 @@ class MotionRecorder {
 
  private:
   struct Figures;
-  void add_sample(const std::vector<Vec3>& particles, double elapsed);
+  /// cloth: null at the start.
+  void add_sample(const std::vector<Vec3>& particles, double elapsed, const Cloth* cloth);
   void add_particles(const std::vector<Vec3>& particles, const std::vector<double>& stretch);
   void take_splits(const Cloth& cloth);
   void add_kept();

@@ -59,9 +59,11 @@ ShownBodies::ShownBodies(const SceneDescription& scene, std::span<const SceneBod
   }
 }
 
-void ShownBodies::add_sample(std::span<const Vec3> particles, double time) {
+void ShownBodies::add_sample(std::span<const Vec3> particles, double time, const Cloth* cloth) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    append_pose(moving_[i].poses, pose_at(bodies_[i], time));
+    const auto id = static_cast<std::uint32_t>(i);
+    append_pose(moving_[i].poses, cloth != nullptr ? pose_in(*cloth, id, bodies_[i], time)
+                                                   : pose_at(bodies_[i], time));
     if (bodies_[i].vertex_move) moving_[i].points.front().add_sample(vertices_at(bodies_[i], time));
   }
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i)

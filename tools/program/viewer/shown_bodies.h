@@ -20,7 +20,8 @@ class ShownBodies {
  public:
   /// What is given must outlive this. quantum: of the vertices of bodies that deform, m.
   ShownBodies(const SceneDescription& scene, std::span<const SceneBody> bodies, double quantum);
-  void add_sample(std::span<const Vec3> particles, double time);
+  /// cloth: when a step has ended; null: at the start.
+  void add_sample(std::span<const Vec3> particles, double time, const Cloth* cloth);
   /// Appends the sections. Returns one object for each body.
   Json write(Sections& sections) const;
 

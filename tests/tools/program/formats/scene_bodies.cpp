@@ -44,6 +44,75 @@ TEST_CASE("bodies survive writing and reading, and move as they are told") {
   CHECK(pose_at(present_bodies(read.value().bodies, 1)[1], 0).position.x == 3);
 }
 
+/// The bodies of a scene file with one particle.
+Result<std::vector<SceneBody>> bodies_of(const std::string& bodies) {
+  const auto read =
+      parse_scene(R"({"positions": [[0, 0, 0]], "masses": [1], "bodies": )" + bodies + "}");
+  if (!read) return Error{read.error()};
+  return read.value().bodies;
+}
+
+TEST_CASE("bodies with a mass are full ones, or what their inertia says, and survive writing") {
+  const auto read = bodies_of(R"([
+      {"shape": "sphere", "centre": [0, 1, 0], "radius": 0.1, "mass": 2, "spin": [0, 3, 0]},
+      {"shape": "box", "size": [0.1, 0.2, 0.4], "density": 1000, "velocity": [1, 0.1, 0]},
+      {"shape": "capsule", "a": [0, 0, 0], "b": [1, 0, 0], "radius": 0.1,
+       "mass": {"mass": 3, "inertia": [1, 2, 2, 0.1, 0, 0]}},
+      {"shape": "capsule", "a": [0, 0, 0], "b": [1, 0, 0], "radius": 0.1,
+       "mass": {"mass": 3, "centre": [0.3, 0, 0], "inertia": [1, 2, 2, 0.1, 0, 0]}}])");
+  REQUIRE_MESSAGE(read, (read ? "" : read.error()));
+  const std::vector<SceneBody>& bodies = read.value();
+  CHECK(bodies[0].mass->mass == 2);
+  CHECK(bodies[0].mass->centre.y == doctest::Approx(1));
+  CHECK(bodies[0].mass->inertia[0] == doctest::Approx(0.4 * 2 * 0.01));
+  CHECK(bodies[0].velocity.angular.y == 3);
+  CHECK(bodies[1].mass->mass == doctest::Approx(8));
+  CHECK(bodies[1].velocity.linear.y == 0.1);
+  CHECK(bodies[2].mass->centre.x == doctest::Approx(0.5));
+  CHECK(bodies[3].mass->centre.x == 0.3);
+  CHECK(bodies[3].mass->inertia == std::array<double, 6>{1, 2, 2, 0.1, 0, 0});
+  SceneDescription scene;
+  scene.positions = {{0, 1, 0}};
+  scene.masses = {1};
+  const std::string text = scene_text(scene, {}, {}, bodies);
+  const auto again = parse_scene(text);
+  REQUIRE_MESSAGE(again, (again ? "" : again.error()));
+  CHECK(scene_text(scene, {}, {}, again.value().bodies) == text);
+  CHECK(again.value().bodies[0].mass->inertia == bodies[0].mass->inertia);
+}
+
+TEST_CASE("masses that no body has are refused with their place") {
+  const auto error_of = [](const std::string& rest) {
+    const auto read = bodies_of("[{" + rest + "}]");
+    return read ? std::string() : read.error();
+  };
+  const std::string ball = R"("shape": "sphere", "radius": 0.1, )";
+  const std::string mesh =
+      R"("shape": "mesh", "vertices": [[0,0,0],[1,0,0],[0,1,0]], "triangles": [[0,1,2]], )";
+  CHECK(error_of(ball + R"("mass": 0)") == "bodies[0].mass: must be finite and greater than 0 (0)");
+  CHECK(error_of(ball + R"("density": -1)") ==
+        "bodies[0].density: must be finite and greater than 0 (-1)");
+  CHECK(error_of(ball + R"("mass": "1 kg")") == R"(bodies[0].mass: expected a number, not "1 kg")");
+  CHECK(error_of(ball + R"("mass": 1, "density": 1)") ==
+        "bodies[0]: expected one of the keys 'mass' and 'density'");
+  CHECK(error_of(mesh + R"("mass": 1)") ==
+        "bodies[0].shape: has a mass as a ball, a capsule or a hull alone (a triangle mesh)");
+  CHECK(error_of(R"("shape": "plane", "density": 1000)") ==
+        "bodies[0].shape: has a mass as a ball, a capsule or a hull alone (a plane)");
+  CHECK(error_of(ball + R"("mass": 1, "moves": {"times": [0], "translations": [[0,0,0]]})") ==
+        "bodies[0].moves: a body with a mass moves by itself");
+  CHECK(error_of(ball + R"("spin": [0, 1, 0])") ==
+        "bodies[0].spin: is of a body with a mass alone");
+  CHECK(error_of(ball + R"("mass": {"mass": 1})") ==
+        "bodies[0].mass: the key 'inertia' is missing");
+  CHECK(error_of(ball + R"("mass": {"mass": 1, "inertia": [1, 1, 1]})") ==
+        "bodies[0].mass.inertia: expected xx, yy, zz, yz, zx and xy, not [1,1,1]");
+  CHECK(error_of(ball + R"("mass": {"mass": 1, "inertia": [1, 1, 3, 0, 0, 0]})") ==
+        "bodies[0].mass.inertia: is that of no body (1, 1, 3, 0, 0, 0)");
+  CHECK(error_of(ball + R"("mass": {"mass": 1, "inertia": [1, 1, 1, 0, 0, 0], "size": 1})") ==
+        "bodies[0].mass: unknown key 'size'");
+}
+
 /// One triangle whose third corner rises by a metre in two seconds.
 SceneBody rising_triangle() {
   const std::vector<Vec3> low{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}}, high{low[0], low[1], {1, 1, 0}};
@@ -99,8 +168,7 @@ TEST_CASE("a mesh may be in a file beside the scene") {
 
 TEST_CASE("errors of bodies name their place") {
   const auto error_of = [](const std::string& bodies) {
-    const auto read =
-        parse_scene(R"({"positions": [[0, 0, 0]], "masses": [1], "bodies": )" + bodies + "}");
+    const auto read = bodies_of(bodies);
     return read ? std::string() : read.error();
   };
   CHECK(error_of(R"([{"shape": "cone"}])") ==

@@ -109,6 +109,20 @@ TEST_CASE("the JSON has every figure, per frame where its name says so") {
   CHECK(actual["peak_rss_mb"] < 2000);
 }
 
+TEST_CASE("bodies with a mass are listed where they end") {
+  RunReport of_free = report();
+  of_free.summary.free_bodies = {
+      {.body = 2, .pose = {{1, 2, 3}, {0, 0, 1, 0}}, .centre = {1, -0.5, 4}}};
+  CHECK(to_json(of_free)["free_bodies"] == Json::parse(R"([{"body": 2, "position": [1.0, 2.0, 3.0],
+      "rotation": [0.0, 0.0, 1.0, 0.0], "centre": [1.0, -0.5, 4.0]}])"));
+  const auto has = [&](const char* line) {
+    return to_table(of_free).find(line) != std::string::npos;
+  };
+  CHECK(has("          1 with a mass, its centre at y -0.5 m in the end\n"));
+  of_free.summary.free_bodies.push_back({.body = 3, .pose = {}, .centre = {0, 0.25, 0}});
+  CHECK(has("          2 with a mass, their centres at y -0.5 m to 0.25 m in the end\n"));
+}
+
 TEST_CASE("the table has every figure too") {
   RunReport in_all = report();
   in_all.summary.scheme = Scheme::rattle;

@@ -82,6 +82,51 @@ TEST_CASE("cloth that has torn and grows is resumed to the same bits") {
   CHECK(report_of(folder, run + "60 --resume " + state)["state_hash"] == whole["state_hash"]);
 }
 
+TEST_CASE(
+    "a run with a body that moves by itself goes on to the same bits, and is replayed to them") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("scene.json", R"({"total_mass": 0.4, "fixed": [0, 1, 2, 3],
+        "positions": [[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1], [0.5, -0.05, 0.5]],
+        "constraints": [[0, 4, null, "distance", 1e-3], [1, 4], [2, 4], [3, 4]],
+        "bodies": [{"shape": "plane", "offset": -5},
+                   {"shape": "box", "size": [0.9, 1.6, 1], "position": [0.52, 0.9, 0.5],
+                    "mass": 0.3, "velocity": [0, -0.5, 0], "spin": [0.4, 3, 0]}]})");
+  const std::string run = scene + " --dt 1/60 --steps ", state = folder.file("state.weft");
+  const auto whole = report_of(folder, run + "30 --record " + folder.file("whole.weft"));
+  CHECK(whole["body_contacts"] == 1);
+  REQUIRE(whole["free_bodies"].size() == 1);
+  CHECK(whole["free_bodies"][0]["body"] == 1);
+  CHECK(whole["free_bodies"][0]["position"][1] < 0.9);
+  report_of(folder, run + "10 --save " + state);
+  const auto resumed =
+      report_of(folder, run + "30 --resume " + state + " --record " + folder.file("rest.weft"));
+  CHECK(resumed["state_hash"] == whole["state_hash"]);
+  CHECK(resumed["free_bodies"] == whole["free_bodies"]);
+  for (const char* name : {"whole.weft", "rest.weft"})
+    CHECK(run_program(folder, "replay " + folder.file(name)).exit_code == 0);
+}
+
+TEST_CASE("a body that moves by itself goes on from a scene that a run has written") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("scene.json", R"({"positions": [[9, 0, 0]],
+        "masses": [1], "bodies": [{"shape": "box", "size": [0.1, 0.2, 0.4], "density": 1000,
+        "position": [0, 1, 0], "rotation": [3, 0.5, 0], "velocity": [1, 2, 0], "spin": [9, 3, 1]}]})");
+  const std::string at = " --dt 1/60 --steps ";
+  const auto whole = report_of(folder, scene + at + "30");
+  report_of(folder, scene + at + "10 --out " + folder.file("later.json"));
+  const auto rest = report_of(folder, folder.file("later.json") + at + "20");
+  for (const char* key : {"position", "rotation", "centre"}) {
+    CAPTURE(key);
+    const auto& expected = whole["free_bodies"][0][key];
+    const auto& found = rest["free_bodies"][0][key];
+    const double sign =
+        key[0] == 'r' && found[3].get<double>() * expected[3].get<double>() < 0 ? -1 : 1;
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      CHECK(sign * found[i].get<double>() ==
+            doctest::Approx(expected[i].get<double>()).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("pins that move, and a run that is resumed twice, come to the same bits") {
   const TemporaryFolder folder;
   const std::string scene =

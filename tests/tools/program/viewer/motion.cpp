@@ -157,6 +157,25 @@ TEST_CASE("bodies move with their poses, and touch") {
   CHECK(most > 0);
 }
 
+TEST_CASE("a body with a mass is shown where it has come to, turned as it is") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("scene.json", R"({"positions": [[9, 0, 0]],
+        "masses": [1], "bodies": [{"shape": "box", "size": [0.1, 0.2, 0.4], "density": 1000,
+        "position": [0, 1, 0], "velocity": [1, 0, 0], "spin": [0, 2, 0]}]})");
+  const auto report =
+      report_of(folder, scene + " --dt 1/60 --steps 30 --out " + folder.file("a.motion"));
+  const auto poses = Motion(folder.read("a.motion")).floats("body 0 poses");
+  REQUIRE(poses.size() == 31 * 7);
+  for (std::size_t frame = 0; frame <= 30; ++frame) {
+    const double time = static_cast<double>(frame) / 60;
+    CHECK(poses[frame * 7] == doctest::Approx(time));
+    CHECK(poses[frame * 7 + 1] == doctest::Approx(1 - 5 * time * time));
+    CHECK(poses[frame * 7 + 4] == doctest::Approx(std::sin(time)));
+    CHECK(poses[frame * 7 + 6] == doctest::Approx(std::cos(time)));
+  }
+  CHECK(report["free_bodies"][0]["position"][1] == doctest::Approx(poses[30 * 7 + 1]));
+}
+
 TEST_CASE("a page has the motion in it, and pages and motions become pages") {
   const TemporaryFolder folder;
   const std::string a = folder.file("a.motion"), page = folder.file("a.html");
