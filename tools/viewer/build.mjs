@@ -1,12 +1,24 @@
 // Makes two pages of their sources, each one file that needs no other: page.html, and ../web/page.html, which has
-// a place for weft itself. `node build.mjs --check` fails if they are not what the sources give.
+// a place for weft itself. Each ends with a hash of all sources and of itself, which the test tools/viewer/pages
+// compares: it needs no npm. `node build.mjs --check` makes the pages anew, and fails if they are others.
 import { build } from 'esbuild';
-import { readFileSync, writeFileSync } from 'node:fs';
+import { createHash } from 'node:crypto';
+import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 
 const pathOf = (name) => fileURLToPath(new URL(name, import.meta.url));
 const read = (name) => readFileSync(pathOf(name), 'utf8');
 const put = (page, place, text) => page.replace(place, () => text);
+
+const FOLDERS = ['.', '../web'];
+
+function sealed(page) {
+  const sources = FOLDERS.flatMap((folder) => readdirSync(pathOf(`${folder}/source`)).sort()
+    .map((name) => `${folder}/source/${name}`));
+  const hash = createHash('sha256');
+  for (const name of ['build.mjs', 'package-lock.json', 'LICENSE.three', ...sources]) hash.update(read(name));
+  return `${page}<!-- sources and page: ${hash.update(page).digest('hex')} -->\n`;
+}
 
 async function pageOf(folder) {
   const options = { bundle: true, minify: true, target: 'es2022', write: false };
@@ -18,10 +30,10 @@ async function pageOf(folder) {
   const licence = read('LICENSE.three').trim();
   const script = `/*\nthis page contains three.js:\n\n${licence}\n*/\n${bundled.outputFiles[0].text.trim()}`;
   const framed = put(read(`${folder}/source/page.html`), '/* style */', styled.outputFiles[0].text.trim());
-  return put(framed, '/* script */', script);
+  return sealed(put(framed, '/* script */', script));
 }
 
-for (const folder of ['.', '../web']) {
+for (const folder of FOLDERS) {
   const page = await pageOf(folder);
   const name = `${folder}/page.html`;
   if (folder === '.' && page.includes(')page_of_weft"')) throw new Error('the page ends the string of C++ that it becomes');
