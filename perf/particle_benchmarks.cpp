@@ -66,7 +66,8 @@ constexpr Kernel kKernels[] = {
      }},
 };
 
-void run(benchmark::State& state, Shared& shared, const Kernel& kernel, simd::Isa isa, int size) {
+void run_kernel(benchmark::State& state, Shared& shared, const Kernel& kernel, simd::Isa isa,
+                int size) {
   Workbench& bench = shared.workshop.get("grid", size, false);
   const simd::BlockRelaxation r = bench.relaxation();
   for (auto _ : state) kernel.pass(simd::table(isa), bench, r);
@@ -79,6 +80,8 @@ void run(benchmark::State& state, Shared& shared, const Kernel& kernel, simd::Is
 
 }  // namespace
 
-void register_particle_benchmarks(Shared& shared) { register_on_grids(kKernels, shared, run); }
+void register_particle_benchmarks(Shared& shared) {
+  register_on_grids(kKernels, shared, run_kernel);
+}
 
 }  // namespace weft::perf

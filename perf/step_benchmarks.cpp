@@ -45,7 +45,7 @@ struct Case {
   int iterations;
 };
 
-std::string name_of(const Case& c) {
+std::string case_name(const Case& c) {
   const std::string backend = c.backend == Backend::reference ? "reference" : perf::name_of(c.isa);
   return std::string(c.iterations > 0 ? "iterate/" : "step/") + c.scene + '/' + backend + '/' +
          c.method.name + '/' + std::to_string(c.size);
@@ -111,7 +111,7 @@ void run(benchmark::State& state, const Case& c) {
 }
 
 void add(const Case& c) {
-  benchmark::RegisterBenchmark(name_of(c).c_str(), [c](benchmark::State& state) {
+  benchmark::RegisterBenchmark(case_name(c).c_str(), [c](benchmark::State& state) {
     run(state, c);
   })->Unit(benchmark::kMillisecond);
 }

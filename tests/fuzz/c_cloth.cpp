@@ -291,7 +291,7 @@ class Session {
 }  // namespace
 }  // namespace weft::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int WEFT_FUZZ_TARGET(c_cloth)(const std::uint8_t* data, std::size_t size) {
   using namespace weft::fuzz;
   Drawing drawing(data, size);
   Arrays arrays(drawing);

@@ -62,7 +62,7 @@ void find_warp(Drawing& drawing, const weft_mesh& mesh) {
 }  // namespace
 }  // namespace weft::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int WEFT_FUZZ_TARGET(c_mesh)(const std::uint8_t* data, std::size_t size) {
   using namespace weft::fuzz;
   Drawing drawing(data, size);
   Arrays arrays(drawing);

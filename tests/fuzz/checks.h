@@ -7,8 +7,13 @@
 #include <cstdint>
 #include <string_view>
 
-/// Each target is one such function; libFuzzer or replay.cpp calls it.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+/// Each target is one function of data and a size. libFuzzer calls it by a name of its own, of one
+/// target in a program; replay.cpp, which has all of them, by the target's.
+#ifdef WEFT_FUZZ_REPLAY
+#define WEFT_FUZZ_TARGET(name) fuzz_##name
+#else
+#define WEFT_FUZZ_TARGET(name) LLVMFuzzerTestOneInput
+#endif
 
 namespace weft::fuzz {
 

@@ -36,7 +36,7 @@ void make_cloth(const Material& material) {
 }  // namespace
 }  // namespace weft::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int WEFT_FUZZ_TARGET(material)(const std::uint8_t* data, std::size_t size) {
   using namespace weft;
   using namespace weft::fuzz;
   const auto material = tools::parse_material(fuzz::text_of(data, size));

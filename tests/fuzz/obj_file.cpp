@@ -76,7 +76,7 @@ void use_as_body(const tools::ObjFile& file) {
 }  // namespace
 }  // namespace weft::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int WEFT_FUZZ_TARGET(obj_file)(const std::uint8_t* data, std::size_t size) {
   using namespace weft;
   using namespace weft::fuzz;
   std::string_view text = fuzz::text_of(data, size);

@@ -48,7 +48,7 @@ void try_seams(std::string_view seam) {
 }  // namespace
 }  // namespace weft::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int WEFT_FUZZ_TARGET(pin_rule)(const std::uint8_t* data, std::size_t size) {
   using namespace weft::fuzz;
   if (size == 0) return 0;
   const std::string_view text = argument_of(data + 1, size - 1);

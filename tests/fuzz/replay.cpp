@@ -24,7 +24,7 @@
   X(material)                \
   X(obj_file) X(options) X(pin_rule) X(run_state) X(saved_model) X(saved_state) X(scene_file)
 #define WEFT_FUZZ_DECLARE(name) \
-  extern "C" int fuzz_##name(const std::uint8_t* data, std::size_t size);
+  extern "C" int WEFT_FUZZ_TARGET(name)(const std::uint8_t* data, std::size_t size);
 WEFT_FUZZ_TARGETS(WEFT_FUZZ_DECLARE)
 
 namespace {
@@ -34,7 +34,7 @@ using Target = int (*)(const std::uint8_t*, std::size_t);
 
 Target target_of(std::string_view name) {
 #define WEFT_FUZZ_FIND(target) \
-  if (name == #target) return fuzz_##target;
+  if (name == #target) return WEFT_FUZZ_TARGET(target);
   WEFT_FUZZ_TARGETS(WEFT_FUZZ_FIND)
   return nullptr;
 }

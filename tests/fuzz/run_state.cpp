@@ -6,7 +6,7 @@
 #include "tests/fuzz/checks.h"
 #include "tests/fuzz/saved_cloths.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int WEFT_FUZZ_TARGET(run_state)(const std::uint8_t* data, std::size_t size) {
   using namespace weft;
   using namespace weft::fuzz;
   if (size == 0) return 0;

@@ -14,7 +14,7 @@ const Bytes& some_model() {
 }  // namespace
 }  // namespace weft::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int WEFT_FUZZ_TARGET(saved_model)(const std::uint8_t* data, std::size_t size) {
   using namespace weft;
   using namespace weft::fuzz;
   if (size == 0) return 0;

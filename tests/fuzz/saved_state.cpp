@@ -12,7 +12,7 @@ Bytes with_fingerprint(std::span<const std::byte> saved, std::span<const std::by
 }  // namespace
 }  // namespace weft::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int WEFT_FUZZ_TARGET(saved_state)(const std::uint8_t* data, std::size_t size) {
   using namespace weft;
   using namespace weft::fuzz;
   if (size == 0) return 0;

@@ -64,7 +64,7 @@ void run(const SceneFile& file, Cloth& cloth) {
 }  // namespace
 }  // namespace weft::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int WEFT_FUZZ_TARGET(scene_file)(const std::uint8_t* data, std::size_t size) {
   using namespace weft;
   using namespace weft::fuzz;
   const auto file = tools::parse_scene(fuzz::text_of(data, size), kNoFolder);
