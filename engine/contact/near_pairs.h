@@ -17,7 +17,7 @@ struct NearState {
   bool is_touching = false;  // in this substep
   bool is_linked = false;    // in this substep: local passes know it by its points
   double push = 0;           // m, along the normal, in this substep
-  reference::Grip grip{};
+  reference::ContactSums sums{};
 };
 
 /// Near pairs of one list of the cloth with bodies.

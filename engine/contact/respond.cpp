@@ -91,7 +91,7 @@ void Response::advance(const ContactScene& scene, Near& near) {
     for (NearState& state : pairs.states) {
       state.is_touching = state.is_linked = false;
       state.push = 0;
-      state.grip = {};
+      state.sums = {};
     }
   }
   for (const std::uint32_t slot : linked_) first_link_[slot] = kNoIndex;
@@ -195,16 +195,16 @@ bool Response::solve(const ContactScene& scene, NearPairs& near, std::size_t i) 
   if (!(weight_of(scene, e) > 0)) return false;
   Vector slip = -pair.outward() * turn_of_arm(scene, e, pair);
   for (std::size_t k = 0; k < 4; ++k) slip = slip + e.nearest.weight[k] * (e.x[k] - e.start[k]);
-  state.grip.thinning = e.thinning;
+  state.sums.thinning = e.thinning;
   const ContactSurface& later = scene.points.later(pair);
   const reference::Stop stop = reference::stop({e.normal, e.gap, slip}, later.friction,
-                                               scene.clock.dt_substep(), state.grip);
+                                               scene.clock.dt_substep(), state.sums);
   if (!(stop.push > 0)) return false;
   state.is_touching = true;
   state.push += stop.push;
   apply(scene, e, pair, stop,
         reference::slow(e.normal, relative_velocity(scene, e, pair), later.friction,
-                        scene.clock.dt_substep(), state.grip));
+                        scene.clock.dt_substep(), state.sums));
   return true;
 }
 
@@ -215,16 +215,16 @@ void Response::take_back_excess(const ContactScene& scene, Near& near) const {
     const auto [list, i, next] = links_[k];
     if (k > 0 && links_[k - 1].list == list && links_[k - 1].pair == i)
       continue;  // by another point
-    reference::Grip& grip = near[list].states[i].grip;
-    if (!(grip.pushed > 0)) continue;
+    reference::ContactSums& sums = near[list].states[i].sums;
+    if (!(sums.pushed > 0)) continue;
     scene.present.read(near[list].list.points(i), scene.particles);
     const PairContact e = contact_of(scene, near[list], i);
-    const double back = std::min(e.gap + e.thinning.by, grip.pushed), weight = weight_of(scene, e);
+    const double back = std::min(e.gap + e.thinning.by, sums.pushed), weight = weight_of(scene, e);
     if (!(back > 0) || !(weight > 0)) continue;
     const double apart = dot(relative_velocity(scene, e, near[list].list.pairs[i]), e.normal),
-                 slower = std::clamp(apart, 0.0, grip.stopped);
-    grip.pushed -= back;
-    grip.stopped -= slower;
+                 slower = std::clamp(apart, 0.0, sums.stopped);
+    sums.pushed -= back;
+    sums.stopped -= slower;
     near[list].states[i].push -= back;
     apply(scene, e, near[list].list.pairs[i], {.push = -back, .by = -back * e.normal},
           {.change = -slower * e.normal});

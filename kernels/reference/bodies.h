@@ -225,7 +225,7 @@ struct Thinning {
 };
 
 /// The effect of contacts of a particle and a body in a substep.
-struct Grip {
+struct ContactSums {
   double pushed = 0, held = 0;     // m: along the normal, without what came out, and by friction
   double stopped = 0, slowed = 0;  // m/s, likewise
   double came_out = 0;             // m, along the normal: the rest of the pushes
@@ -239,7 +239,7 @@ struct PointContact {
   Vector slip{};    // m, of the point beside the material of the body
 };
 
-struct Gripped {
+struct ContactResult {
   bool is_touching = false;
   Vector start{};       // where the substep began, moved by what came out: no speed is gained by it
   Vector x{}, v{};      // where it is, and its velocity there
@@ -263,7 +263,7 @@ struct Stop {
   double slid = 0;       // m, along the surface, that friction has left
   Vector by{};           // m, of the point, altogether
 };
-inline Stop stop(const PointContact& e, double friction, double h, Grip& done) {
+inline Stop stop(const PointContact& e, double friction, double h, ContactSums& done) {
   const double toward = -dot(e.normal, e.slip), gap = e.gap + done.thinning.by;
   const double approach = toward - done.thinning.retreat, began = gap + approach - done.came_out;
   const double recovers = h * std::min(kFastestRecovery, kRecovery - began / kRecoveryTime);
@@ -284,7 +284,7 @@ struct Slowed {
   Vector change{};   // m/s
   double taken = 0;  // m/s, along the surface
 };
-inline Slowed slow(Vector normal, Vector relative, double friction, double h, Grip& done) {
+inline Slowed slow(Vector normal, Vector relative, double friction, double h, ContactSums& done) {
   const double into = std::max(0.0, -dot(normal, relative) - done.thinning.retreat / h);
   done.stopped += into;
   const Vector sliding = relative - dot(normal, relative) * normal;
@@ -295,43 +295,43 @@ inline Slowed slow(Vector normal, Vector relative, double friction, double h, Gr
 }
 
 /// v: the velocity at x. touch: of that way.
-inline Gripped grip(const BodyMotion& body, const Touch& touch, Vector start, Vector x, Vector v,
-                    Grip& done) {
-  Gripped gripped{.start = start, .x = x, .v = v};
-  if (!touch.is_near) return gripped;
+inline ContactResult solve_contact(const BodyMotion& body, const Touch& touch, Vector start,
+                                   Vector x, Vector v, ContactSums& done) {
+  ContactResult result{.start = start, .x = x, .v = v};
+  if (!touch.is_near) return result;
   const Vector n = touch.normal;
   const Stop stopped = stop({n, touch.gap, slip_of(body, start, x)}, body.friction, body.h, done);
-  if (!(stopped.push > 0)) return gripped;
-  gripped.is_touching = true;
-  gripped.normal = n;
-  gripped.push = stopped.push;
-  gripped.start = start + stopped.comes_out * n;
-  gripped.x = x + stopped.by;
-  const Slowed slowed = slow(n, v - body.velocity_at(gripped.x), body.friction, body.h, done);
-  gripped.v = v + slowed.change;
-  gripped.friction = 2 * slowed.taken * (stopped.slid / body.h);
-  return gripped;
+  if (!(stopped.push > 0)) return result;
+  result.is_touching = true;
+  result.normal = n;
+  result.push = stopped.push;
+  result.start = start + stopped.comes_out * n;
+  result.x = x + stopped.by;
+  const Slowed slowed = slow(n, v - body.velocity_at(result.x), body.friction, body.h, done);
+  result.v = v + slowed.change;
+  result.friction = 2 * slowed.taken * (stopped.slid / body.h);
+  return result;
 }
 
-/// A particle that contacts within the cloth have moved in rounds: it is gripped where it came
-/// under the surface, and else follows the body as far as that has pushed too much. touch: its gap
-/// and normal may be those of a particle over the surface.
-inline Gripped follow(const BodyMotion& body, const Touch& touch, Vector start, Vector x, Vector v,
-                      Grip& done) {
-  Gripped gripped = grip(body, touch, start, x, v, done);
-  if (gripped.is_touching) return gripped;
+/// A particle that contacts within the cloth have moved in rounds. Its contact is solved if it came
+/// under the surface. Otherwise it follows the body as far as that has pushed too much. touch: its
+/// gap and normal may be those of a particle over the surface.
+inline ContactResult follow(const BodyMotion& body, const Touch& touch, Vector start, Vector x,
+                            Vector v, ContactSums& done) {
+  ContactResult result = solve_contact(body, touch, start, x, v, done);
+  if (result.is_touching) return result;
   const double back = std::min(touch.gap + done.thinning.by, done.pushed);
-  if (!(back > 0)) return gripped;
+  if (!(back > 0)) return result;
   const double apart = dot(touch.normal, v - body.velocity_at(x)),
                faster = std::clamp(apart, 0.0, done.stopped);
   done.pushed -= back;
   done.stopped -= faster;
-  gripped.is_touching = true;
-  gripped.normal = touch.normal;
-  gripped.push = -back;
-  gripped.x = x - back * touch.normal;
-  gripped.v = v - faster * touch.normal;
-  return gripped;
+  result.is_touching = true;
+  result.normal = touch.normal;
+  result.push = -back;
+  result.x = x - back * touch.normal;
+  result.v = v - faster * touch.normal;
+  return result;
 }
 
 }  // namespace weft::reference

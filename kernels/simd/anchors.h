@@ -103,7 +103,7 @@ struct BackstopLanes {
 }
 
 [[gnu::always_inline]] inline void hold_behind(HeldLanes& p, const BackstopBlock& block,
-                                               const AnchorHold& h, const FloatVector& settled,
+                                               const AnchorSolve& h, const FloatVector& settled,
                                                std::uint32_t lane) {
   const Floats share(h.share);
   const BackstopLanes b(block, lane, share, p.point, p.x);
@@ -122,7 +122,7 @@ struct BackstopLanes {
 }
 
 template <class At>
-[[gnu::always_inline]] inline void hold_block(const AnchorHold& h, std::size_t i, At at) {
+[[gnu::always_inline]] inline void hold_block(const AnchorSolve& h, std::size_t i, At at) {
   const AnchorBlock& block = h.blocks[i];
   const BackstopBlock* backstop = block.backstop < 0 ? nullptr : h.backstops + block.backstop;
   const Flight& f = h.flight;
@@ -157,8 +157,8 @@ template <class At>
   h.moved[i] = static_cast<std::uint16_t>(moved);
 }
 
-void hold_anchors(const AnchorHold& hold, std::size_t first, std::size_t last) {
-  const AnchorHold h = hold;
+void hold_anchors(const AnchorSolve& hold, std::size_t first, std::size_t last) {
+  const AnchorSolve h = hold;
   for (std::size_t i = first; i < last; ++i) {
     if (h.woven)
       hold_block(h, i, InWovenRow{});

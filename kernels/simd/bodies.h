@@ -1,7 +1,7 @@
-/// Particles against bodies in lanes: reference::grip (kernels/reference/bodies.h), which has the
-/// formulas. A pair is a block of particles (in_rows.h) and a body that may be near to it; blocks
-/// in which nobody touches the body are read and left. Particles whose way is long beside a capsule
-/// are left to the reference.
+/// Particles against bodies in lanes: reference::solve_contact (kernels/reference/bodies.h), which
+/// has the formulas. A pair is a block of particles (in_rows.h) and a body that may be near to it;
+/// blocks without a contact are read and left. Particles whose way is long beside a
+/// capsule are left to the reference.
 #pragma once
 
 #include "kernels/reference/bodies.h"
@@ -16,7 +16,7 @@ namespace {
 }
 
 /// kFloats particles of a block beside a body.
-struct GripLanes {
+struct TouchLanes {
   FloatVector x, start;  // from the frame's origin
   FloatVector slip;
   FloatVector normal;
@@ -25,7 +25,7 @@ struct GripLanes {
 };
 
 /// By the gap at its end.
-[[gnu::always_inline]] inline void touch_capsule(GripLanes& p, const BodyFrame& f, Floats radius) {
+[[gnu::always_inline]] inline void touch_capsule(TouchLanes& p, const BodyFrame& f, Floats radius) {
   FloatVector axis = splat(f.axis), from_a = p.x - splat(f.a);
   const Floats none(0.f), height = dot(from_a, axis);
   const Floats across =
@@ -45,7 +45,7 @@ struct GripLanes {
       fused(Floats(face[1]), x.y, fused_from(Floats(1.f), Floats(face[3]), Floats(face[2]) * x.z)));
 }
 
-[[gnu::always_inline]] inline void touch_plane(GripLanes& p, const BodyFrame& f, Floats radius) {
+[[gnu::always_inline]] inline void touch_plane(TouchLanes& p, const BodyFrame& f, Floats radius) {
   p.gap = height_over(f.faces[0].to, p.x) - radius;
   p.near = p.gap < Floats(0.f);
   p.normal = splat(f.faces[0].to);
@@ -53,7 +53,7 @@ struct GripLanes {
 
 /// The face through which a way enters, or, where it begins inside, the one nearest to that: unless
 /// it leads up from that one, and out.
-[[gnu::always_inline]] inline void touch_hull(GripLanes& p, const BodyFrame& f, Floats radius) {
+[[gnu::always_inline]] inline void touch_hull(TouchLanes& p, const BodyFrame& f, Floats radius) {
   const Floats none(0.f), far(1e30f);
   Floats enters = none - Floats(1.f), leaves = far, nearest = none - far, nearest_gap = none;
   FloatVector entry = no_vector(), last = no_vector();
@@ -94,10 +94,10 @@ struct GripLanes {
 }
 
 template <class At>
-[[gnu::always_inline]] inline GripLanes begin_grip(const BodyHold& h, const BodyBlock& block,
-                                                   const BodyFrame& f, std::uint32_t lane, At at,
-                                                   const FloatVector& u) {
-  GripLanes p;
+[[gnu::always_inline]] inline TouchLanes begin_touch(const BodySolve& h, const BodyBlock& block,
+                                                     const BodyFrame& f, std::uint32_t lane, At at,
+                                                     const FloatVector& u) {
+  TouchLanes p;
   FloatVector before = at.get(h.flight.u_before, block.place, lane);
   FloatVector moved = u - before;
   p.x = (at.get(h.base, block.place, lane) - splat(f.origin)) + u;
@@ -119,7 +119,7 @@ template <class At>
 }
 
 /// m, along the normal; 0 where nothing is to be done.
-[[gnu::always_inline]] inline Floats push_of(const GripLanes& p, Floats approach, Floats came_out,
+[[gnu::always_inline]] inline Floats push_of(const TouchLanes& p, Floats approach, Floats came_out,
                                              float h) {
   const Floats none(0.f), began = p.gap + approach - came_out;
   using reference::kFastestRecovery, reference::kRecovery, reference::kRecoveryTime;
@@ -137,16 +137,16 @@ template <class At>
 }
 
 template <class At>
-[[gnu::always_inline]] inline void grip_pair(const BodyHold& h, std::size_t i, At at) {
+[[gnu::always_inline]] inline void solve_pair(const BodySolve& h, std::size_t i, At at) {
   const BodyBlock& block = h.blocks[h.pairs[i].block];
   const BodyFrame& f = h.frames[h.pairs[i].body];
   const Flight& flight = h.flight;
-  BodyGrips& grips = h.grips[i];
+  BodyContactSums& sums = h.sums[i];
   const Floats none(0.f);
   std::uint32_t touching = 0, far = 0, quick = 0;
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
     FloatVector u = at.get(flight.u, block.place, lane);
-    GripLanes p = begin_grip(h, block, f, lane, at, u);
+    TouchLanes p = begin_touch(h, block, f, lane, at, u);
     if (f.face_count == 0) {
       const FloatMask is_quick =
           dot(p.slip, p.slip) > Floats(f.short_way) && load(block.mass + lane) > none;
@@ -154,16 +154,16 @@ template <class At>
       p.near = p.near && !is_quick;
     }
     if (bits(p.near) == 0) continue;
-    const Floats thinned_by = load(grips.thinned_by + lane), retreat = load(grips.retreat + lane);
+    const Floats thinned_by = load(sums.thinned_by + lane), retreat = load(sums.retreat + lane);
     const Floats toward = none - dot(p.normal, p.slip), approach = toward - retreat;
     p.gap = p.gap + thinned_by;
-    const Floats came_out = load(grips.came_out + lane);
+    const Floats came_out = load(sums.came_out + lane);
     const Floats push = push_of(p, approach, came_out, h.h);
     const FloatMask on = push > none;
     if (bits(on) == 0) continue;
     const Floats stays_out = xsimd::min(push, xsimd::max(none, approach));
-    const Floats pushed = load(grips.pushed + lane) + stays_out;
-    Floats held = load(grips.held + lane);
+    const Floats pushed = load(sums.pushed + lane) + stays_out;
+    Floats held = load(sums.held + lane);
     FloatVector along = fused(toward, p.normal, p.slip);
     const Floats presses = Floats(static_cast<float>(reference::kPressed)) * thinned_by;
     const Floats most_held = Floats(f.friction) * (pushed + presses);
@@ -180,28 +180,28 @@ template <class At>
     const Floats out = dot(p.normal, relative);
     const Floats per_second(1.f / h.h);
     const Floats into = xsimd::max(none, none - out - retreat * per_second);
-    const Floats stopped = load(grips.stopped + lane) + into;
-    Floats slowed = load(grips.slowed + lane);
+    const Floats stopped = load(sums.stopped + lane) + into;
+    Floats slowed = load(sums.slowed + lane);
     FloatVector sliding = fused_from(out, p.normal, relative);
     const Floats square = dot(sliding, sliding);
     const Floats most_slowed = Floats(f.friction) * (stopped + presses * per_second);
     const Floats taken = held_share(xsimd::sqrt(square), most_slowed, slowed);
     FloatVector change = fused_from(taken, sliding, into * p.normal);
 
-    xsimd::select(on, pushed, load(grips.pushed + lane)).store_unaligned(grips.pushed + lane);
-    xsimd::select(on, held, load(grips.held + lane)).store_unaligned(grips.held + lane);
-    xsimd::select(on, stopped, load(grips.stopped + lane)).store_unaligned(grips.stopped + lane);
-    xsimd::select(on, slowed, load(grips.slowed + lane)).store_unaligned(grips.slowed + lane);
-    xsimd::select(on, came_out + push - stays_out, came_out).store_unaligned(grips.came_out + lane);
+    xsimd::select(on, pushed, load(sums.pushed + lane)).store_unaligned(sums.pushed + lane);
+    xsimd::select(on, held, load(sums.held + lane)).store_unaligned(sums.held + lane);
+    xsimd::select(on, stopped, load(sums.stopped + lane)).store_unaligned(sums.stopped + lane);
+    xsimd::select(on, slowed, load(sums.slowed + lane)).store_unaligned(sums.slowed + lane);
+    xsimd::select(on, came_out + push - stays_out, came_out).store_unaligned(sums.came_out + lane);
 
     const Floats momentum =
         xsimd::select(on, load(block.mass + lane) * Floats(h.momentum_share), none);
     FloatVector impulse = momentum * change;
-    add(grips.linear, lane, impulse);
-    add(grips.angular, lane, cross(r, impulse));
+    add(sums.linear, lane, impulse);
+    add(sums.angular, lane, cross(r, impulse));
     const Floats slid = (Floats(1.f) - share) * xsimd::sqrt(dot(along, along));
     const Floats lost = momentum * taken * xsimd::sqrt(square) * slid * Floats(2.f / h.h);
-    (load(grips.friction + lane) + lost).store_unaligned(grips.friction + lane);
+    (load(sums.friction + lane) + lost).store_unaligned(sums.friction + lane);
 
     FloatVector to = u + by;
     at.put(flight.u, block.place, lane, select(on, to, u));
@@ -222,24 +222,24 @@ template <class At>
   h.quick[i] = static_cast<std::uint16_t>(quick);
 }
 
-void grip_bodies(const BodyHold& hold, std::size_t first, std::size_t last) {
-  const BodyHold h = hold;
+void solve_body_contacts(const BodySolve& hold, std::size_t first, std::size_t last) {
+  const BodySolve h = hold;
   for (std::size_t i = first; i < last; ++i) {
     if (h.woven)
-      grip_pair(h, i, InWovenRow{});
+      solve_pair(h, i, InWovenRow{});
     else
-      grip_pair(h, i, InQuads{});
+      solve_pair(h, i, InQuads{});
   }
 }
 
 template <class At>
-[[gnu::always_inline]] inline Floats depths_of_pair(const BodyHold& h, std::size_t i, At at) {
+[[gnu::always_inline]] inline Floats depths_of_pair(const BodySolve& h, std::size_t i, At at) {
   const BodyBlock& block = h.blocks[h.pairs[i].block];
   const BodyFrame& f = h.frames[h.pairs[i].body];
   Floats deepest(0.f);
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
     FloatVector u = at.get(h.flight.u, block.place, lane);
-    const GripLanes p = begin_grip(h, block, f, lane, at, u);
+    const TouchLanes p = begin_touch(h, block, f, lane, at, u);
     const Floats spared = load(h.spared + i * kernels::kLanes + lane);
     const Floats depth = xsimd::select(p.near, Floats(0.f) - p.gap - spared, Floats(0.f));
     deepest = xsimd::max(deepest, depth);
@@ -247,8 +247,8 @@ template <class At>
   return deepest;
 }
 
-float deepest_in_bodies(const BodyHold& hold, std::size_t first, std::size_t last) {
-  const BodyHold h = hold;
+float deepest_in_bodies(const BodySolve& hold, std::size_t first, std::size_t last) {
+  const BodySolve h = hold;
   Floats deepest(0.f);
   for (std::size_t i = first; i < last; ++i) {
     const Floats depth =

@@ -123,7 +123,7 @@ constexpr Table make_table(const ContactKernels* contacts) {
           .relax_membrane = relax_membrane,
           .judge_membrane = judge_membrane,
           .hold_anchors = hold_anchors,
-          .grip_bodies = grip_bodies,
+          .solve_body_contacts = solve_body_contacts,
           .deepest_in_bodies = deepest_in_bodies,
           .measure_pairs = measure_pairs,
           .touch_pairs = touch_pairs,

@@ -1,6 +1,6 @@
 /// The vector kernels, one function pointer per stage, one table per instruction set. Their data
 /// stand in sweep_data.h, yarn_data.h, front_data.h, small_step_data.h, bending_data.h,
-/// contact_data.h, grip_data.h and nearness_data.h.
+/// contact_data.h, limit_data.h and nearness_data.h.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 #include "kernels/impulse_energy.h"
 #include "kernels/simd/bending_data.h"
 #include "kernels/simd/front_data.h"
-#include "kernels/simd/grip_data.h"
 #include "kernels/simd/isa.h"
+#include "kernels/simd/limit_data.h"
 #include "kernels/simd/nearness_data.h"
 #include "kernels/simd/small_step_data.h"
 #include "kernels/simd/sweep_data.h"
@@ -207,11 +207,11 @@ struct Table {
   /// out: per block, a bit per lane: whether a law is broken by more than `strain`.
   void (*judge_membrane)(const Membrane&, float strain, std::uint16_t* out, bool rope,
                          std::size_t first, std::size_t last);
-  void (*hold_anchors)(const AnchorHold&, std::size_t first, std::size_t last);
+  void (*hold_anchors)(const AnchorSolve&, std::size_t first, std::size_t last);
   /// For pairs first ... last - 1.
-  void (*grip_bodies)(const BodyHold&, std::size_t first, std::size_t last);
+  void (*solve_body_contacts)(const BodySolve&, std::size_t first, std::size_t last);
   /// m, by which the deepest is under a surface; at least 0.
-  float (*deepest_in_bodies)(const BodyHold&, std::size_t first, std::size_t last);
+  float (*deepest_in_bodies)(const BodySolve&, std::size_t first, std::size_t last);
   /// For blocks first ... last - 1. edges: pairs of edges, else of a point and a triangle.
   void (*measure_pairs)(const PairMeasure&, bool edges, std::size_t first, std::size_t last);
   void (*touch_pairs)(const PairTouch&, bool edges, std::size_t first, std::size_t last);

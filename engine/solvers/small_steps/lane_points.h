@@ -75,7 +75,7 @@ struct LanePoints {
       at += places.stride;
     }
     if (anchor_at != nullptr && anchor_at[slot] != kNoIndex) hold(slot, anchor_at[slot]);
-    if (bodies != nullptr) grip(slot);
+    if (bodies != nullptr) solve_contacts(slot);
   }
   /// At the end of the substep, and its velocity there.
   kernels::Vector place(const float* from, std::uint32_t slot) const {
@@ -143,8 +143,8 @@ struct LanePoints {
     const reference::Held held = anchors.hold(anchor, place(u, slot), settled(slot));
     if (held.is_at_limit) put(slot, held.x, held.v);
   }
-  void grip(std::uint32_t slot) const;
-  void grip_by_bodies(std::uint32_t slot) const;
+  void solve_contacts(std::uint32_t slot) const;
+  void solve_body_contacts(std::uint32_t slot) const;
   void push(std::uint32_t slot, kernels::Vector by) const {
     move(slot, by);
     touched.push_back(slot);
@@ -154,14 +154,14 @@ struct LanePoints {
 /// The same as contacts with meshes see them.
 using LaneParticles = PointParticles<LanePoints>;
 
-inline void LanePoints::grip_by_bodies(std::uint32_t slot) const {
+inline void LanePoints::solve_body_contacts(std::uint32_t slot) const {
   if (bodies->clear_of(slot, position_at_start(slot), position(slot)) > 0) return;
   ParticleAtHand hand = take(slot);
   if (hold_by_bodies(*this, slot, hand)) put_back(slot, hand);
 }
 
-inline void LanePoints::grip(std::uint32_t slot) const {
-  grip_by_bodies(slot);
+inline void LanePoints::solve_contacts(std::uint32_t slot) const {
+  solve_body_contacts(slot);
   if (!bodies->has_meshes()) return;
   LaneParticles particles(*this);
   bodies->hold_by_meshes(slot, particles);

@@ -19,7 +19,7 @@ void LaneStore::hold_bodies(Team& team) {
         now_.arrived.push_back({slot, bodies_.touched_by(slot, points.place(u_.data(), slot))});
       },
       [&](std::uint32_t slot) { now_.passes.look_at(slot); },
-      [&](std::uint32_t slot) { points.grip(slot); });
+      [&](std::uint32_t slot) { points.solve_contacts(slot); });
 }
 
 void LaneStore::hold_by_meshes(Team& team) {

@@ -30,7 +30,7 @@ void ReferenceBodies::advance(double part, ContactParticles& particles, Team& te
   clock_.advance();
   shares_.begin_substep();
   meshes_.advance(particles, clock_, team);
-  grips_.assign(model_.slots() * clock_.bodies().size(), {});
+  contact_sums_.assign(model_.slots() * clock_.bodies().size(), {});
   before_.swap(on_);
   on_.assign(model_.slots(), false);
   share_room(particles);
@@ -43,7 +43,7 @@ void ReferenceBodies::share_room(ContactParticles& particles) {
   for (const ThicknessShares* shares : {&shares_, &among_forms_}) {
     for (const ThicknessShares::Entry& entry : shares->entries()) {
       reference::Thinning& thinning =
-          grips_[entry.slot * clock_.bodies().size() + entry.body].thinning;
+          contact_sums_[entry.slot * clock_.bodies().size() + entry.body].thinning;
       if (entry.thinning.by > thinning.by) thinning = entry.thinning;
       if (clock_.bodies()[entry.body].mesh == nullptr) on_[entry.slot] = true;
     }
@@ -88,32 +88,32 @@ double ReferenceBodies::clear_of(std::uint32_t slot, Vector start, Vector x) con
   return clear;
 }
 
-template <class GripBy, class Look>
-TouchedSurface ReferenceBodies::hold_by(std::uint32_t slot, ContactParticle& at, GripBy&& grip_by,
-                                        Look&& look) {
+template <class SolveBy, class Look>
+TouchedSurface ReferenceBodies::solve_with(std::uint32_t slot, ContactParticle& at,
+                                           SolveBy&& solve_by, Look&& look) {
   TouchedSurface surface;
   if (model_.inverse_mass[slot] == 0) return surface;
   for (std::size_t i = 0; i < clock_.bodies().size(); ++i) {
     if (clock_.bodies()[i].mesh != nullptr) continue;
     const reference::BodyMotion& body = clock_.motions()[i];
-    reference::Grip& grip = grips_[slot * clock_.bodies().size() + i];
+    reference::ContactSums& sums = contact_sums_[slot * clock_.bodies().size() + i];
     const reference::Touch touch = look(body, at.start, at.x, radius(slot));
-    const reference::Gripped gripped = grip_by(body, touch, at.start, at.x, at.v, grip);
-    if (!gripped.is_touching) continue;
-    surface = {static_cast<std::uint32_t>(i), body.velocity_at(gripped.x)};
+    const reference::ContactResult result = solve_by(body, touch, at.start, at.x, at.v, sums);
+    if (!result.is_touching) continue;
+    surface = {static_cast<std::uint32_t>(i), body.velocity_at(result.x)};
     const double momentum = model_.mass[slot] * momentum_share_;
-    impulses_.add(i, body.to.centre, gripped.x, momentum * (gripped.v - at.v), surface.velocity);
-    impulses_.friction += 0.5 * momentum * gripped.friction;
-    at = {gripped.start, gripped.x, gripped.v};
+    impulses_.add(i, body.to.centre, result.x, momentum * (result.v - at.v), surface.velocity);
+    impulses_.friction += 0.5 * momentum * result.friction;
+    at = {result.start, result.x, result.v};
   }
   return surface;
 }
 
 TouchedSurface ReferenceBodies::hold(std::uint32_t slot, ContactParticle& at) {
-  return hold_by(slot, at, reference::grip, reference::find_touch);
+  return solve_with(slot, at, reference::solve_contact, reference::find_touch);
 }
 TouchedSurface ReferenceBodies::follow(std::uint32_t slot, ContactParticle& at) {
-  return hold_by(slot, at, reference::follow, reference::find_touch_or_gap);
+  return solve_with(slot, at, reference::follow, reference::find_touch_or_gap);
 }
 
 Vector ReferenceBodies::kept_out(std::uint32_t slot, Vector start, Vector by) const {
@@ -163,19 +163,19 @@ void ReferenceBodies::sum(BodyReport& report) const {
   if (empty()) return;
   for (const BodyImpulse& body : impulses_.of_body) report.impulses.push_back({.id = body.id});
   add(impulses_, clock_, report);
-  report.contacts = static_cast<int>(
-      std::ranges::count_if(grips_, [](const reference::Grip& grip) { return grip.pushed > 0; }));
+  report.contacts = static_cast<int>(std::ranges::count_if(
+      contact_sums_, [](const reference::ContactSums& sums) { return sums.pushed > 0; }));
   add_report(meshes_, clock_, report);
 }
 
 void ReferenceBodies::read_contacts(const ContactParticles& particles,
                                     std::vector<BodyTouch>& contacts) const {
   const std::size_t count = clock_.bodies().size();
-  for (std::size_t i = 0; i < grips_.size(); ++i) {
-    if (!(grips_[i].pushed > 0)) continue;
+  for (std::size_t i = 0; i < contact_sums_.size(); ++i) {
+    if (!(contact_sums_[i].pushed > 0)) continue;
     const auto slot = static_cast<std::uint32_t>(i / count);
     contacts.push_back(
-        touch_of(clock_, i % count, slot, particles.position(slot), grips_[i].pushed));
+        touch_of(clock_, i % count, slot, particles.position(slot), contact_sums_[i].pushed));
   }
   meshes_.read_touching(particles, clock_, contacts);
 }

@@ -83,9 +83,9 @@ class ReferenceBodies {
   void read_contacts(const ContactParticles& particles, std::vector<BodyTouch>& contacts) const;
 
  private:
-  template <class GripBy, class Look>
-  TouchedSurface hold_by(std::uint32_t slot, ContactParticle& particle, GripBy&& grip_by,
-                         Look&& look);
+  template <class SolveBy, class Look>
+  TouchedSurface solve_with(std::uint32_t slot, ContactParticle& particle, SolveBy&& solve_by,
+                            Look&& look);
   void share_room(ContactParticles& particles);
   void share_among_forms(ContactParticles& particles, const Touching& touching, SubstepMoment when);
   /// m, of its distance from the particle: what there is to share when the substep ends. Beside a
@@ -99,7 +99,7 @@ class ReferenceBodies {
   ThicknessShares among_forms_;  // of bodies of a closed form among themselves
   SurfaceContacts meshes_;
   double momentum_share_ = 1;
-  std::vector<reference::Grip> grips_;  // per slot and body
+  std::vector<reference::ContactSums> contact_sums_;  // per slot and body
   Touching on_, before_;
   std::vector<BodyClearance> clearances_;  // scratch
   ContactImpulses impulses_;               // but for those that meshes have given

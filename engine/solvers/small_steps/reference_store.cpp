@@ -354,8 +354,8 @@ void ReferenceStore::keep(Team&) {
   for (std::size_t i = 0; i < model_.slots(); ++i) past_.moved.set(i, x_[i] - before_[i]);
 }
 
-bool ReferenceStore::Points::grip(std::uint32_t slot) const {
-  const bool is_held = grip_by_bodies(slot);
+bool ReferenceStore::Points::solve_contacts(std::uint32_t slot) const {
+  const bool is_held = solve_body_contacts(slot);
   if (!bodies->has_meshes()) return is_held;
   PointParticles particles(*this);
   return bodies->meshes().solve_at(particles, bodies->clock(), slot) || is_held;
@@ -399,7 +399,7 @@ void ReferenceStore::hold_bodies(Team&) {
   for (std::uint32_t slot = 0; slot < model_.slots(); ++slot) {
     if (!now_.is_free(slot)) continue;
     const Vector from = x_[slot];
-    if (points.grip_by_bodies(slot) && length(x_[slot] - from) > strain * shortest_[slot])
+    if (points.solve_body_contacts(slot) && length(x_[slot] - from) > strain * shortest_[slot])
       now_.passes.look_at(slot);
   }
 }

@@ -198,15 +198,15 @@ struct ReferenceStore::Points {
   void move(std::uint32_t slot, kernels::Vector by) const {
     x.add(slot, by);
     if (anchor_at != nullptr && anchor_at[slot] != kNoIndex) hold(slot, anchor_at[slot]);
-    if (bodies != nullptr) grip(slot);
+    if (bodies != nullptr) solve_contacts(slot);
   }
   bool hold(std::uint32_t slot, std::uint32_t anchor) const {
     const reference::Held held = anchors.hold(anchor, x[slot], settled(slot));
     if (held.is_at_limit) put(slot, held.x, held.v);
     return held.is_at_limit;
   }
-  bool grip(std::uint32_t slot) const;
-  bool grip_by_bodies(std::uint32_t slot) const {
+  bool solve_contacts(std::uint32_t slot) const;
+  bool solve_body_contacts(std::uint32_t slot) const {
     ParticleAtHand hand = take(slot);
     const bool is_held = hold_by_bodies(*this, slot, hand);
     if (is_held) put_back(slot, hand);

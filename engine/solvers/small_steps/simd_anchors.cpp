@@ -122,15 +122,15 @@ void SimdAnchors::advance() {
 }
 
 void SimdAnchors::hold(const simd::Flight& flight, float rate, Team& team) {
-  const simd::AnchorHold hold{.flight = flight,
-                              .blocks = blocks_.data(),
-                              .backstops = backstops_.data(),
-                              .at_limit = held_.data(),
-                              .moved = moved_.data(),
-                              .woven = model_.small_steps().places().woven(),
-                              .rate = rate,
-                              .share = static_cast<float>(clock_.share()),
-                              .per_second = static_cast<float>(clock_.per_second())};
+  const simd::AnchorSolve hold{.flight = flight,
+                               .blocks = blocks_.data(),
+                               .backstops = backstops_.data(),
+                               .at_limit = held_.data(),
+                               .moved = moved_.data(),
+                               .woven = model_.small_steps().places().woven(),
+                               .rate = rate,
+                               .share = static_cast<float>(clock_.share()),
+                               .per_second = static_cast<float>(clock_.per_second())};
   team.for_each_share(blocks_.size(), [&](std::size_t first, std::size_t last) {
     table_.hold_anchors(hold, first, last);
   });

@@ -57,9 +57,9 @@ void SimdBodies::advance(const simd::Flight& flight, const float* base, double p
   write_frames();
   before_.swap(on_);
   std::ranges::fill(on_, std::uint16_t{0});
-  for (simd::BodyGrips& grips : grips_) {
-    for (float* lanes : {grips.pushed, grips.held, grips.stopped, grips.slowed, grips.came_out,
-                         grips.thinned_by, grips.retreat})
+  for (simd::BodyContactSums& sums : contact_sums_) {
+    for (float* lanes : {sums.pushed, sums.held, sums.stopped, sums.slowed, sums.came_out,
+                         sums.thinned_by, sums.retreat})
       std::fill_n(lanes, kLanes, 0.f);
   }
   for (auto* bits : {&touching_, &moved_, &quick_}) std::ranges::fill(*bits, std::uint16_t{0});
@@ -80,9 +80,9 @@ void SimdBodies::share_room(ContactParticles& particles) {
       for (std::size_t i = pairs_of_[block]; i < pairs_of_[block + 1]; ++i) {
         if (pairs_[i].body != entry.body) continue;
         on_[block] = static_cast<std::uint16_t>(on_[block] | 1u << lane);
-        if (!(static_cast<float>(entry.thinning.by) > grips_[i].thinned_by[lane])) continue;
-        grips_[i].thinned_by[lane] = static_cast<float>(entry.thinning.by);
-        grips_[i].retreat[lane] = static_cast<float>(entry.thinning.retreat);
+        if (!(static_cast<float>(entry.thinning.by) > contact_sums_[i].thinned_by[lane])) continue;
+        contact_sums_[i].thinned_by[lane] = static_cast<float>(entry.thinning.by);
+        contact_sums_[i].retreat[lane] = static_cast<float>(entry.thinning.retreat);
       }
     }
   }
@@ -116,8 +116,8 @@ void SimdBodies::find_standing(ContactParticles& particles, Team& team) {
   meshes_.advance(particles, clock_, team);
 }
 
-simd::BodyHold SimdBodies::hold_of(const simd::Flight& flight, const float* base,
-                                   float rate) const {
+simd::BodySolve SimdBodies::solve_data_of(const simd::Flight& flight, const float* base,
+                                          float rate) const {
   return {.flight = flight,
           .base = base,
           .blocks = layout_.blocks.data(),
@@ -131,15 +131,15 @@ simd::BodyHold SimdBodies::hold_of(const simd::Flight& flight, const float* base
 
 void SimdBodies::hold(const simd::Flight& flight, const float* base, float rate, Team& team) {
   if (pairs_.empty()) return;
-  simd::BodyHold hold = hold_of(flight, base, rate);
-  hold.grips = grips_.data();
+  simd::BodySolve hold = solve_data_of(flight, base, rate);
+  hold.sums = contact_sums_.data();
   std::vector<std::uint16_t>& now = now_;
   now.assign(pairs_.size(), 0);
   hold.touching = now.data();
   hold.moved = moved_.data();
   hold.quick = quick_.data();
   team.for_each_share(first_pair_.size() - 1, [&](std::size_t first, std::size_t last) {
-    table_.grip_bodies(hold, first_pair_[first], first_pair_[last]);
+    table_.solve_body_contacts(hold, first_pair_[first], first_pair_[last]);
   });
   std::ranges::fill(held_, std::uint16_t{0});
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
@@ -167,9 +167,9 @@ double SimdBodies::clear_of(std::uint32_t slot, Vector start, Vector x) const {
   return clear;
 }
 
-template <class GripBy, class Look>
-TouchedSurface SimdBodies::hold_by(std::uint32_t slot, ContactParticle& particle, GripBy&& grip_by,
-                                   Look&& look) {
+template <class SolveBy, class Look>
+TouchedSurface SimdBodies::solve_with(std::uint32_t slot, ContactParticle& particle,
+                                      SolveBy&& solve_by, Look&& look) {
   const std::uint32_t place = layout_.place_of[slot];
   TouchedSurface surface;
   if (place == kNoIndex || pairs_.empty()) return surface;
@@ -180,24 +180,24 @@ TouchedSurface SimdBodies::hold_by(std::uint32_t slot, ContactParticle& particle
     const reference::Touch touch =
         look(body, particle.start, particle.x, number(layout_.blocks[block].radius[lane]));
     if (!touch.is_near) continue;
-    simd::BodyGrips& lanes = grips_[i];
-    reference::Grip grip{number(lanes.pushed[lane]),
-                         number(lanes.held[lane]),
-                         number(lanes.stopped[lane]),
-                         number(lanes.slowed[lane]),
-                         number(lanes.came_out[lane]),
-                         {number(lanes.thinned_by[lane]), number(lanes.retreat[lane])}};
-    const reference::Gripped gripped =
-        grip_by(body, touch, particle.start, particle.x, particle.v, grip);
-    if (!gripped.is_touching) continue;
-    lanes.pushed[lane] = static_cast<float>(grip.pushed);
-    lanes.held[lane] = static_cast<float>(grip.held);
-    lanes.stopped[lane] = static_cast<float>(grip.stopped);
-    lanes.slowed[lane] = static_cast<float>(grip.slowed);
-    lanes.came_out[lane] = static_cast<float>(grip.came_out);
+    simd::BodyContactSums& lanes = contact_sums_[i];
+    reference::ContactSums sums{number(lanes.pushed[lane]),
+                                number(lanes.held[lane]),
+                                number(lanes.stopped[lane]),
+                                number(lanes.slowed[lane]),
+                                number(lanes.came_out[lane]),
+                                {number(lanes.thinned_by[lane]), number(lanes.retreat[lane])}};
+    const reference::ContactResult result =
+        solve_by(body, touch, particle.start, particle.x, particle.v, sums);
+    if (!result.is_touching) continue;
+    lanes.pushed[lane] = static_cast<float>(sums.pushed);
+    lanes.held[lane] = static_cast<float>(sums.held);
+    lanes.stopped[lane] = static_cast<float>(sums.stopped);
+    lanes.slowed[lane] = static_cast<float>(sums.slowed);
+    lanes.came_out[lane] = static_cast<float>(sums.came_out);
     const double momentum = model_.mass[slot] * momentum_share_;
-    const Vector impulse = momentum * (gripped.v - particle.v);
-    const Vector moment = cross(gripped.x - body.to.centre, impulse);
+    const Vector impulse = momentum * (result.v - particle.v);
+    const Vector moment = cross(result.x - body.to.centre, impulse);
     const auto add = [&](simd::LaneVectors& sum, Vector v) {
       sum.x[lane] += static_cast<float>(v.x);
       sum.y[lane] += static_cast<float>(v.y);
@@ -205,20 +205,20 @@ TouchedSurface SimdBodies::hold_by(std::uint32_t slot, ContactParticle& particle
     };
     add(lanes.linear, impulse);
     add(lanes.angular, moment);
-    lanes.friction[lane] += static_cast<float>(momentum * gripped.friction);
+    lanes.friction[lane] += static_cast<float>(momentum * result.friction);
     const auto bit = static_cast<std::uint16_t>(1u << lane);
     touching_[i] = static_cast<std::uint16_t>(touching_[i] | bit);
-    particle = {gripped.start, gripped.x, gripped.v};
-    surface = {pairs_[i].body, body.velocity_at(gripped.x)};
+    particle = {result.start, result.x, result.v};
+    surface = {pairs_[i].body, body.velocity_at(result.x)};
   }
   return surface;
 }
 
 TouchedSurface SimdBodies::hold(std::uint32_t slot, ContactParticle& particle) {
-  return hold_by(slot, particle, reference::grip, reference::find_touch);
+  return solve_with(slot, particle, reference::solve_contact, reference::find_touch);
 }
 TouchedSurface SimdBodies::follow(std::uint32_t slot, ContactParticle& particle) {
-  return hold_by(slot, particle, reference::follow, reference::find_touch_or_gap);
+  return solve_with(slot, particle, reference::follow, reference::find_touch_or_gap);
 }
 
 Vector SimdBodies::kept_out(std::uint32_t slot, Vector start, Vector by) const {
@@ -280,7 +280,7 @@ double SimdBodies::deepest(const simd::Flight& flight, const float* base,
                            ContactParticles& particles, Team& team) {
   double deepest = meshes_.deepest(particles, clock_, team);
   share_among_forms(particles, on_, SubstepMoment::end);
-  simd::BodyHold hold = hold_of(flight, base, 0);
+  simd::BodySolve hold = solve_data_of(flight, base, 0);
   std::array<simd::BodyPair, 64> pairs;
   std::array<std::array<float, kLanes>, 64> spared;
   hold.pairs = pairs.data();
@@ -325,14 +325,14 @@ void SimdBodies::collect_impulses() {
     return sum;
   };
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    simd::BodyGrips& grips = grips_[i];
+    simd::BodyContactSums& sums = contact_sums_[i];
     const BodyMotion& motion = clock_.motions()[pairs_[i].body];
-    const Vector linear = take(grips.linear), angular = take(grips.angular);
+    const Vector linear = take(sums.linear), angular = take(sums.angular);
     BodyImpulse& sum = impulses_.of_body[pairs_[i].body];
     sum.linear = sum.linear + linear;
     sum.angular = sum.angular + angular;
     impulses_.work += dot(linear, motion.velocity) + dot(angular, motion.spin);
-    for (float& lost : grips.friction)
+    for (float& lost : sums.friction)
       impulses_.friction += 0.5 * static_cast<double>(std::exchange(lost, 0.f));
   }
 }
@@ -349,7 +349,7 @@ void SimdBodies::sum(BodyReport& report) {
 
 std::size_t SimdBodies::bytes() const {
   return clock_.bytes() + meshes_.bytes() + layout_.bytes() + bytes_of(frames_) + bytes_of(faces_) +
-         bytes_of(pairs_) + bytes_of(first_pair_) + bytes_of(pairs_of_) + bytes_of(grips_) +
+         bytes_of(pairs_) + bytes_of(first_pair_) + bytes_of(pairs_of_) + bytes_of(contact_sums_) +
          bytes_of(touching_) + bytes_of(moved_) + bytes_of(quick_) + bytes_of(on_) +
          bytes_of(before_) + bytes_of(held_) + bytes_of(arrived_) + bytes_of(impulses_.of_body) +
          bytes_of(boxes_) + bytes_of(extents_) + bytes_of(now_) + bytes_of(clearances_) +

@@ -1,7 +1,7 @@
 /// Particles beside bodies, in lanes (kernels/simd/bodies.h).
 ///
 /// Which blocks of particles a body may meet is looked for once an interval of some substeps, from
-/// boxes around where they are and where they are going; contacts are found, and gripped, in every
+/// boxes around where they are and where they are going; contacts are found and solved in every
 /// substep, after each sweep.
 #pragma once
 
@@ -143,13 +143,13 @@ class SimdBodies {
   /// m, of its distance from each particle of the block: what there is to share when the substep
   /// ends. Beside a mesh that is not known, and is what there was when it began.
   std::array<float, kernels::kLanes> spared_by(std::size_t block, std::uint32_t body) const;
-  /// Adds what grips have given to impulses_.
+  /// Adds the sums of contacts to impulses_.
   void collect_impulses();
-  template <class GripBy, class Look>
-  TouchedSurface hold_by(std::uint32_t slot, ContactParticle& particle, GripBy&& grip_by,
-                         Look&& look);
+  template <class SolveBy, class Look>
+  TouchedSurface solve_with(std::uint32_t slot, ContactParticle& particle, SolveBy&& solve_by,
+                            Look&& look);
   void write_frames();
-  simd::BodyHold hold_of(const simd::Flight& flight, const float* base, float rate) const;
+  simd::BodySolve solve_data_of(const simd::Flight& flight, const float* base, float rate) const;
 
   const Model& model_;
   const double far_;                // of a constraint's length
@@ -164,15 +164,15 @@ class SimdBodies {
   double momentum_share_ = 1;
   kernels::Vector origin_{};  // of frames
 
-  std::vector<simd::BodyFrame> frames_;            // per body
-  std::vector<simd::BodyFace> faces_;              // of all of them
-  std::vector<simd::BodyPair> pairs_;              // by blocks, then by bodies
-  std::vector<std::uint32_t> first_pair_;          // per block that has some, and the end
-  std::vector<std::uint32_t> pairs_of_;            // per block: where its pairs begin; and the end
-  kernels::AlignedVector<simd::BodyGrips> grips_;  // per pair
-  std::vector<std::uint16_t> touching_, moved_, quick_;  // per pair
-  Touching on_, before_;                                 // per block, in this substep and the last
-  Touching held_, arrived_;                              // by the last sweep
+  std::vector<simd::BodyFrame> frames_;    // per body
+  std::vector<simd::BodyFace> faces_;      // of all of them
+  std::vector<simd::BodyPair> pairs_;      // by blocks, then by bodies
+  std::vector<std::uint32_t> first_pair_;  // per block that has some, and the end
+  std::vector<std::uint32_t> pairs_of_;    // per block: where its pairs begin; and the end
+  kernels::AlignedVector<simd::BodyContactSums> contact_sums_;  // per pair
+  std::vector<std::uint16_t> touching_, moved_, quick_;         // per pair
+  Touching on_, before_;               // per block, in this substep and the last
+  Touching held_, arrived_;            // by the last sweep
   ContactImpulses impulses_;           // before the last search, and of arrivals; but for meshes
   std::vector<BodyClock::Box> boxes_;  // scratch
   std::vector<Extent> extents_;        // likewise
@@ -205,7 +205,7 @@ void SimdBodies::for_each_contact(Visit&& visit) const {
     for (std::uint32_t bits = touching_[i]; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
       visit(layout_.slot_at[pairs_[i].block * kernels::kLanes + lane], std::size_t{pairs_[i].body},
-            static_cast<double>(grips_[i].pushed[lane]));
+            static_cast<double>(contact_sums_[i].pushed[lane]));
     }
   }
 }

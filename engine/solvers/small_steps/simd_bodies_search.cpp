@@ -122,7 +122,7 @@ void SimdBodies::search(const simd::Flight& flight, const float* base) {
   }
   pairs_of_.push_back(static_cast<std::uint32_t>(pairs_.size()));
   first_pair_.push_back(static_cast<std::uint32_t>(pairs_.size()));
-  grips_.assign(pairs_.size(), {});
+  contact_sums_.assign(pairs_.size(), {});
   for (auto* bits : {&touching_, &moved_, &quick_}) bits->assign(pairs_.size(), 0);
   const Vector middle = (1 / static_cast<double>(layout_.blocks.size())) * sum;
   constexpr double kGrid = 0x1p-6;  // m: floats hold its multiples up to 262 km

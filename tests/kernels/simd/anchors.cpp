@@ -98,7 +98,7 @@ struct HeldBlock {
         kPerSecond);
   }
   void hold(const simd::Table& table) {
-    const simd::AnchorHold hold{
+    const simd::AnchorSolve hold{
         .flight = {.u = u.data(), .predicted = predicted.data(), .v = v.data(), .led_to = u.data()},
         .blocks = &block,
         .backstops = &backstop,

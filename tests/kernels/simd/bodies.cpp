@@ -104,15 +104,15 @@ struct MovingBody {
 };
 
 /// Particles that begin about at the surface of a body and move by some millimetres.
-struct GrippedBlock {
+struct TouchedBlock {
   bool woven;
   kernels::AlignedVector<float> base, u, u_before, predicted, v;
   simd::BodyBlock block{};
-  simd::BodyGrips grips{};
+  simd::BodyContactSums sums{};
   std::array<float, kLanes> spared{};
   std::uint16_t touching = 0, moved = 0, quick = 0;
 
-  GrippedBlock(bool is_woven, Random& random) : woven(is_woven) {
+  TouchedBlock(bool is_woven, Random& random) : woven(is_woven) {
     for (auto* array : {&base, &u, &u_before, &predicted, &v}) array->resize(4 * kLanes);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const Vector out = random_vector(random, 1);
@@ -124,10 +124,10 @@ struct GrippedBlock {
       block.mass[lane] = lane % 7 == 6 ? 0 : static_cast<float>(random.between(0.5, 2));
       block.radius[lane] = lane % 5 == 4 ? 0.001f : 0.f;
       block.far[lane] = static_cast<float>(kFar * kFar);
-      grips.pushed[lane] = lane % 3 == 0 ? 1e-4f : 0.f;
-      grips.came_out[lane] = lane % 4 == 0 ? 2e-5f : 0.f;
-      grips.thinned_by[lane] = lane % 6 == 1 ? 4e-4f : 0.f;
-      grips.retreat[lane] = lane % 12 == 1 ? 1e-4f : 0.f;
+      sums.pushed[lane] = lane % 3 == 0 ? 1e-4f : 0.f;
+      sums.came_out[lane] = lane % 4 == 0 ? 2e-5f : 0.f;
+      sums.thinned_by[lane] = lane % 6 == 1 ? 4e-4f : 0.f;
+      sums.retreat[lane] = lane % 12 == 1 ? 1e-4f : 0.f;
       spared[lane] = lane % 6 == 1 ? 3e-4f : 0.f;
     }
   }
@@ -146,7 +146,7 @@ struct GrippedBlock {
   Vector settled(std::size_t lane) const {
     return read(v, lane) + kRate * (read(u, lane) - read(predicted, lane));
   }
-  simd::BodyHold hold(const MovingBody& body, const simd::BodyPair& pair) {
+  simd::BodySolve hold(const MovingBody& body, const simd::BodyPair& pair) {
     return {.flight = {.u = u.data(),
                        .u_before = u_before.data(),
                        .predicted = predicted.data(),
@@ -156,7 +156,7 @@ struct GrippedBlock {
             .blocks = &block,
             .pairs = &pair,
             .frames = &body.frame,
-            .grips = &grips,
+            .sums = &sums,
             .touching = &touching,
             .moved = &moved,
             .quick = &quick,
@@ -173,23 +173,23 @@ int check_against_reference(const simd::Table& table, bool woven, const ShapeDes
                             std::uint32_t seed) {
   Random random(seed);
   const MovingBody body(shape, random);
-  const GrippedBlock before(woven, random);
-  GrippedBlock after = before;
+  const TouchedBlock before(woven, random);
+  TouchedBlock after = before;
   const simd::BodyPair pair;
-  table.grip_bodies(after.hold(body, pair), 0, 1);
+  table.solve_body_contacts(after.hold(body, pair), 0, 1);
   int count = 0;
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     CAPTURE(seed);
     CAPTURE(lane);
     const Vector start = before.read(before.u_before, lane), x = before.read(before.u, lane);
-    reference::Grip grip{
-        .pushed = double{before.grips.pushed[lane]},
-        .came_out = double{before.grips.came_out[lane]},
-        .thinning = {double{before.grips.thinned_by[lane]}, double{before.grips.retreat[lane]}}};
+    reference::ContactSums sums{
+        .pushed = double{before.sums.pushed[lane]},
+        .came_out = double{before.sums.came_out[lane]},
+        .thinning = {double{before.sums.thinned_by[lane]}, double{before.sums.retreat[lane]}}};
     const reference::Touch touch =
         find_touch(body.motion, start, x, double{before.block.radius[lane]});
-    const reference::Gripped expected =
-        reference::grip(body.motion, touch, start, x, before.settled(lane), grip);
+    const reference::ContactResult expected =
+        reference::solve_contact(body.motion, touch, start, x, before.settled(lane), sums);
     const bool is_free = before.block.mass[lane] > 0;
     const bool touches = is_free && expected.is_touching;
     if (!(expected.push > 0 && expected.push < 1e-6))  // else rounding decides
@@ -200,12 +200,12 @@ int check_against_reference(const simd::Table& table, bool woven, const ShapeDes
     }
     CHECK(length(after.read(after.u, lane) - expected.x) < 2e-7);
     CHECK(length(after.settled(lane) - expected.v) < 1e-3);
-    CHECK(double{after.grips.pushed[lane]} == doctest::Approx(grip.pushed).epsilon(1e-3));
-    CHECK(std::abs(double{after.grips.came_out[lane]} - grip.came_out) < 2e-7);
+    CHECK(double{after.sums.pushed[lane]} == doctest::Approx(sums.pushed).epsilon(1e-3));
+    CHECK(std::abs(double{after.sums.came_out[lane]} - sums.came_out) < 2e-7);
     const double momentum = double{before.block.mass[lane]} * kMomentumShare;
     const Vector impulse = momentum * (expected.v - before.settled(lane));
-    const Vector given{double{after.grips.linear.x[lane]}, double{after.grips.linear.y[lane]},
-                       double{after.grips.linear.z[lane]}};
+    const Vector given{double{after.sums.linear.x[lane]}, double{after.sums.linear.y[lane]},
+                       double{after.sums.linear.z[lane]}};
     CHECK(length(given - impulse) < 2e-3);
     ++count;
   }
@@ -222,7 +222,7 @@ int check_against_reference(const simd::Table& table, bool woven, const ShapeDes
   return count;
 }
 
-TEST_CASE("particles are gripped by bodies as in double") {
+TEST_CASE("contacts of particles with bodies are solved as in double") {
   const std::array<ShapeDescription, 4> shapes{Plane{{0.2, 1, 0.1}, 0.03}, Ball{{}, 0.1},
                                                Capsule{{0, -0.03, 0}, {0, 0.02, 0}, 0.08, 0.1},
                                                box({0.17, 0.15, 0.16})};

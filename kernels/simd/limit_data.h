@@ -1,4 +1,4 @@
-/// Data of the kernels that hold particles of small steps to anchors and out of bodies.
+/// Data of the kernels of anchors and bodies in small steps.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +20,10 @@ struct alignas(64) AnchorBlock {
   std::int32_t backstop = -1;   // its block of these, or none
 };
 struct alignas(64) BackstopBlock {
-  LaneVectors normal, turn;  // when the step begins, and in it; who has none: 0
+  LaneVectors normal, turn;  // when the step begins, and in it; 0 without one
   float distance[kernels::kLanes], curvature[kernels::kLanes];
 };
-struct AnchorHold {
+struct AnchorSolve {
   Flight flight{};
   const AnchorBlock* blocks = nullptr;
   const BackstopBlock* backstops = nullptr;
@@ -62,9 +62,9 @@ struct BodyFrame {
 struct BodyPair {
   std::uint32_t block = 0, body = 0;
 };
-/// reference::Grip of each lane in the present substep, and what was given to the particles since
-/// the search: momentum, its moment about the body, and twice the energy that friction took.
-struct alignas(64) BodyGrips {
+/// reference::ContactSums of each lane in the present substep, and the sums for particles since the
+/// search: momentum, its moment about the body, and twice the energy that friction took.
+struct alignas(64) BodyContactSums {
   float pushed[kernels::kLanes], held[kernels::kLanes];
   float stopped[kernels::kLanes], slowed[kernels::kLanes];
   float came_out[kernels::kLanes];
@@ -72,13 +72,13 @@ struct alignas(64) BodyGrips {
   LaneVectors linear, angular;
   float friction[kernels::kLanes];
 };
-struct BodyHold {
+struct BodySolve {
   Flight flight{};
   const float* base = nullptr;
   const BodyBlock* blocks = nullptr;
   const BodyPair* pairs = nullptr;
   const BodyFrame* frames = nullptr;
-  BodyGrips* grips = nullptr;         // per pair
+  BodyContactSums* sums = nullptr;    // per pair
   std::uint16_t* touching = nullptr;  // per pair, a bit per lane
   std::uint16_t* moved = nullptr;     // likewise: farther than `far`
   std::uint16_t* quick = nullptr;     // likewise: its way is to be looked at in full
