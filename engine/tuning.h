@@ -55,11 +55,9 @@ inline constexpr double kCornerPush = 5e-5;
 /// In ways that a particle is predicted to take until the next search: what it may go beyond.
 inline constexpr double kContactReach = 0.5;
 /// Rounds of a sweep over contacts with bodies that move by themselves, at most; they end where one
-/// changes less than the second share of what the first did. In thicknesses: what is farther from a
-/// body when a sweep begins is left to the next one.
+/// changes less than the second share of what the first did.
 inline constexpr int kFreeRounds = 50;
 inline constexpr double kFreeLeft = 1e-3;
-inline constexpr double kFreeMargin = 1;
 /// Turns of these contacts and of local passes, at most.
 inline constexpr int kFreeTurns = 8;
 /// In the shortest edges of a particle: it is expected to go beyond its straight way by no more,

@@ -40,8 +40,7 @@ bool FreeContactSweep::add(FreeContact& contact, const FreeBodyNow& body, FreeCo
   const reference::BodyMotion& motion = body.motion;
   const ContactParticle at = is_same ? particles_.back().at : host.particles().read(contact.slot);
   const reference::Touch touch = touch_of_free(motion, at.start, at.x, host.radius(contact.slot));
-  const double margin = tuning::kFreeMargin * motion.thickness;
-  if (touch.gap > margin && contact.push == 0 && contact.stop == 0) return false;
+  if (touch.gap > 0 && contact.push == 0 && contact.stop == 0) return false;
   if (!is_same) {
     particles_.push_back({.slot = contact.slot,
                           .at = at,
