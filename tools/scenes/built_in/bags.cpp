@@ -23,13 +23,14 @@ tools::PinMove gathering(double x_side, double z_side) {
 }
 
 tools::SceneBody ball(Vec3 on, double mass) {
-  constexpr double kRadius = 0.08, kThickness = 1e-3;   // m
-  constexpr double kInertia = 0.4 * kRadius * kRadius;  // m^2, of a full ball
-  return {.shape = weft::Ball{.radius = kRadius},
+  constexpr double kRadius = 0.08, kThickness = 1e-3;  // m
+  const ShapeDescription shape = weft::Ball{.radius = kRadius};
+  const auto built = build_shape(shape).value();
+  const double density = mass / mass_of(*built, 1).value().mass;
+  return {.shape = shape,
           .position = {on.x, on.y + kRadius + kThickness, on.z},
           .thickness = kThickness,
-          .mass = BodyMass{.mass = mass,
-                           .inertia = {kInertia * mass, kInertia * mass, kInertia * mass}}};
+          .mass = mass_of(*built, density).value()};
 }
 
 Layout bags_layout(const Options& options) {
