@@ -181,10 +181,9 @@ void ReferenceStore::pull(const BendingStep& step) {
     for (std::size_t k = 0; k < 4; ++k) {
       if (!now_.is_free(e.slots[k])) continue;
       double* const of = residual + 4 * std::size_t{e.slots[k]};
-      const Vector by = pulls[k];
-      of[0] += by.x;
-      of[1] += by.y;
-      of[2] += by.z;
+      of[0] += pulls[k].x;
+      of[1] += pulls[k].y;
+      of[2] += pulls[k].z;
     }
   }
 }
