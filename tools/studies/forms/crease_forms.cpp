@@ -34,7 +34,7 @@ double still(Material& m) {
 }
 
 Sheet strip_of(Pattern pattern) {
-  const double width = pattern == Pattern::quads ? kLength / 2 : 2 * kLength;
+  const double width = pattern == Pattern::quads ? kLength / 2 : kLength;
   return sheet_of(pattern, kLength, width, kCells);
 }
 
@@ -108,15 +108,15 @@ class Bent {
       : swing_(still(material)),
         dt_(1 / kRates[refinement]),
         strip_(clamped_strip(pattern, material, kLength, strip_of(pattern).width, kCells)),
-        run_(weightless(), {.tolerance = 1e-3}),
-        end_(strip_.scene, strip_.clamp + kLength - 1.6 * kCell, strip_.clamp + kLength),
+        run_(weightless(), {}),
+        end_(strip_.scene, strip_.clamp + kLength - 2.6 * kCell, strip_.clamp + kLength),
         curvature_(strip_.scene, strip_.clamp),
         forces_(strip_.scene.positions.size()) {}
 
   /// To this moment per width, N, by and by. Returns the curvature that it comes to, 1/m.
   double bend(double moment) {
     const double from = std::exchange(moment_, moment);
-    const int frames = static_cast<int>(std::ceil(15 * swing_ / dt_));
+    const int frames = static_cast<int>(std::ceil(12 * swing_ / dt_));
     for (int k = 1; k <= 2 * frames; ++k) {
       const double now = from + (moment - from) * eased(static_cast<double>(k) / frames);
       end_.turn(run_, now * strip_.sheet.width, forces_);
