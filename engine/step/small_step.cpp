@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "engine/measure/state_measure.h"
+#include "engine/solvers/small_steps/fold_length.h"
 #include "engine/solvers/small_steps/free_bodies.h"
 #include "engine/solvers/small_steps/small_steps.h"
 #include "engine/solvers/stall.h"
@@ -28,6 +30,11 @@ namespace {
 bool leaves_bending(const State& s) {
   return s.small_steps->bending_error() > s.settings.tolerance;
 }
+
+/// J, that springs and triangles of fabric have released in a frame, and bending elements.
+struct Released {
+  double strain = 0, bending = 0;
+};
 
 /// The frame that is being done, by its plan.
 class Frame {
@@ -56,7 +63,9 @@ class Frame {
     forces_.begin();
     give_ = give_per_mass(s_, plan_);
     const double give_before = plan_.placed ? 0 : s_.give_per_mass;
-    elastic_energy_before_ = elastic_energy(s_.position, std::max(give_, give_before));
+    give_before_ = std::max(give_, give_before);
+    strain_energy_before_ = strain_energy(s_.position, give_before_);
+    bending_energy_before_ = solver_.bending_energy(give_before_, team_);
   }
   void substep() {
     forces_.begin_substep(team_);
@@ -162,9 +171,19 @@ class Frame {
            report_.max_rail_gap <= s_.settings.contact_tolerance;
   }
 
-  /// J, by springs, triangles of fabric and bending elements, since the beginning: there those that
-  /// have become stiffer because substeps are shorter had no more than before.
-  double released() { return elastic_energy_before_ - elastic_energy(s_.solved, give_); }
+  /// Since the beginning: there those that have become stiffer because substeps are shorter had no
+  /// more than before.
+  Released released() {
+    return {strain_energy_before_ - strain_energy(s_.solved, give_),
+            bending_energy_before_ - solver_.bending_energy(give_, team_)};
+  }
+  /// J, that bending has given to the motion, with hinges that have yielded as they are now. It
+  /// takes as long as the bending of two substeps. Nothing where it is not known.
+  std::optional<double> released_to_motion() {
+    if (s_.model->bending.size() == 0 || !goes_on() || !turns_folds()) return {};
+    return solver_.releasable_bending_energy(s_.position.view(), give_before_, team_) -
+           solver_.releasable_bending_energy(s_.solved.view(), give_, team_);
+  }
   /// J, that bending elements have lost since the beginning because they yielded.
   double yielded() const { return yielded_; }
   /// See FrameForces::end().
@@ -177,9 +196,17 @@ class Frame {
   std::uint32_t passed_particle() const { return spheres_.passed_particle(); }
 
  private:
-  double elastic_energy(kernels::Vectors& x, double give) {
+  /// Whether substeps are about as long as in the frame before, if there was one. Where they are
+  /// far longer, bends give back what shorter ones have loaded unseen (perf/tried.md).
+  bool goes_on() const { return plan_.placed || solver_.has_past(); }
+  /// Whether substeps resolve how folds turn, which the matrix of bending does not know.
+  bool turns_folds() const {
+    return plan_.dt_substep <=
+           substep_length_for_folds(*s_.model, solver_.creases().creases(), s_.position.view());
+  }
+  double strain_energy(kernels::Vectors& x, double give) {
     return s_.measure->spring_energy(x.view(), give, team_) +
-           energy_of_membrane(*s_.model, x, give) + solver_.bending_energy(give, team_);
+           energy_of_membrane(*s_.model, x, give);
   }
   Status put_right_what_is_left() {
     Stall stall(tuning::kRoundPatience);
@@ -248,11 +275,11 @@ class Frame {
   FramePasses passes_{*s_.model, s_.contacts, report_};
   FrameForces forces_{s_, plan_, places_};
   FrameSpheres spheres_{s_, places_, report_};
-  double left_ = 0;                   // FrameCourse
-  double law_error_ = 0;              // a strain, of the last sweep, before it was mended
-  double give_ = 0;                   // s^2, give_per_mass()
-  double elastic_energy_before_ = 0;  // J, in the beginning
-  double yielded_ = 0;                // J
+  double left_ = 0;                    // FrameCourse
+  double law_error_ = 0;               // a strain, of the last sweep, before it was mended
+  double give_ = 0, give_before_ = 0;  // s^2, give_per_mass(); of the beginning
+  double strain_energy_before_ = 0, bending_energy_before_ = 0;  // J, in the beginning
+  double yielded_ = 0;                                           // J
 };
 
 /// As timed. To find contacts with bodies is a stage of its own.
@@ -291,14 +318,17 @@ Remains end_frame(State& s, Frame& frame, const FramePlan& plan, double dt_frame
                   const Budget& budget, kernels::ImpulseEnergy& change, Trial& trial) {
   Remains remains{give_per_mass(s, plan), takes_over_in(s) ? 0 : s.lost_energy};
   trial.seam_work = s.small_steps->seams().work();
-  const double released =
-      frame.released() + trial.seam_work + s.body_report.work + s.body_report.untangling;
-  if (s.settings.iterations == 0)
-    remains.lost_energy = guard_springs(
-        s, remains.lost_energy, released - std::max(0.0, frame.yielded()), dt_frame, change);
+  const Released released = frame.released();
+  const double done =
+      released.strain + trial.seam_work + s.body_report.work + s.body_report.untangling;
+  if (s.settings.iterations == 0) {
+    const double by_elements = released.bending - std::max(0.0, frame.yielded());
+    const double by_bends = frame.released_to_motion().value_or(by_elements);
+    remains.lost_energy = guard_springs(s, remains.lost_energy, done + by_bends, dt_frame, change);
+  }
   s.body_report.work += s.small_steps->free_bodies().slowed();
   if (pins_move(s)) trial.pin_work = work_of(motion_of_pins(s, dt_frame), s, dt_frame);
-  trial.energy_lost = trial.pin_work + released - 0.5 * change.gain;
+  trial.energy_lost = trial.pin_work + done + released.bending - 0.5 * change.gain;
   if (!takes_over_in(s)) trial.motion_error = s.small_steps->motion_error();
   if (refines_substeps(s)) {
     trial.lengthening = s.lengthening;

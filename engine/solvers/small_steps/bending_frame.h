@@ -20,6 +20,7 @@
 
 #include <weft/weft.h>
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -54,6 +55,10 @@ class BendingFrame {
 
   bool is_factored() const { return is_factored_; }
   BendingLimits limits() const { return {part_, weight_, tuning::kMostBendingSteps}; }
+  /// The error of an energy is the square of that of the force.
+  BendingLimits limits_of_energy() const {
+    return {std::sqrt(part_), weight_, tuning::kMostBendingSteps};
+  }
   /// 1/s^2. Constraints after bending may load elements that are stiffer than a substep resolves:
   /// these have no more energy than the softest that is not resolved, in substeps with the `give`
   /// of a sweep, (b h)^2 / omega.

@@ -113,6 +113,13 @@ void LaneStore::begin_bending(const FramePlan& plan) {
   bending_.begin(plan, acceleration_.data(), now_.has_past && past_.dt_substep == now_.dt_substep);
 }
 
+double LaneStore::releasable_bending_energy(kernels::VectorsView x, double give, Team& team) {
+  team.for_each_part(model_.slots(), kStretch, [&](std::size_t first, std::size_t last) {
+    layout_.places().offset(table_, x, first, last, base_.data(), predicted_.data());
+  });
+  return bending_.releasable_energy(predicted_.data(), give, team);
+}
+
 /// Without a past the particles are taken to have been in free flight.
 void LaneStore::begin_past(Team& team) {
   if (!now_.has_past) {

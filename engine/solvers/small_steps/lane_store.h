@@ -103,6 +103,7 @@ class LaneStore {
   void read_velocities(kernels::VectorsView v, Team& team) const;
   double largest_move(Team& team);
   double bending_energy(double give, Team& team) { return bending_.energy(u_.data(), give, team); }
+  double releasable_bending_energy(kernels::VectorsView x, double give, Team& team);
   double bending_error() const { return bending_.error(); }
   bool has_bent() const { return bending_.has_bent(); }
   double resolved_bending(double give) const { return bending_.resolved(give); }

@@ -92,6 +92,7 @@ concept IsRead = requires(Store store, const Store& seen, kernels::VectorsView x
   { store.velocity_before(slots[0]) } -> std::same_as<kernels::Vector>;
   { store.largest_move(team) } -> std::same_as<double>;
   { store.bending_energy(h, team) } -> std::same_as<double>;
+  { store.releasable_bending_energy(x, h, team) } -> std::same_as<double>;
   { seen.bending_error() } -> std::same_as<double>;
   { seen.rounding_error(h) } -> std::same_as<double>;
   { seen.bytes() } -> std::same_as<std::size_t>;

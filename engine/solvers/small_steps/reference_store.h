@@ -98,6 +98,7 @@ class ReferenceStore {
   void read_velocities(kernels::VectorsView v, Team& team) const;
   double largest_move(Team& team);
   double bending_energy(double give, Team& team);
+  double releasable_bending_energy(kernels::VectorsView x, double give, Team& team);
   double bending_error() const { return bending_error_; }
   bool has_bent() const { return bending_frame_.is_solved_now(); }
   double resolved_bending(double give) const { return bending_frame_.resolved(give); }

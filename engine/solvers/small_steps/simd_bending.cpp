@@ -28,8 +28,9 @@ SimdBending::SimdBending(const Model& model, const Settings& settings, const sim
       stiff_(layout_.rows, table),
       spans_(layout_.blocks.size()),
       energies_(layout_.blocks.size()) {
-  if (!layout_.empty()) soft_.allocate();
   if (layout_.empty()) return;
+  soft_.allocate();
+  works_.resize((4 * layout_.rows.slots() + kFloatsOfPart - 1) / kFloatsOfPart);
   const bool is_damped = model.damping.bending > 0, is_folded = !layout_.folds.empty();
   if (is_damped) from_.resize(4 * layout_.rows.slots());
   if (is_damped || is_folded) along_.resize(layout_.blocks.size());
@@ -104,12 +105,16 @@ simd::Bending SimdBending::arrays(const float* u) {
 
 /// Into the residual of soft_.
 void SimdBending::pull(const float* u, const float* start, const BendingStep& step, Team& team) {
+  float* const pulls = soft_.residual();
+  for_floats(team, [&](std::size_t first, std::size_t last) {
+    std::fill(pulls + first, pulls + last, 0.f);
+  });
   simd::Bending bending = arrays(u);
   bending.start = start;
   bending.damping = static_cast<float>(step.damping);
   bending.resolved = to_finite_float(frame_.resolved_turning(step.give));
   for_blocks(team, [&](bool four, std::size_t first, std::size_t last) {
-    table_.pull_bending(bending, soft_.residual(), four, first, last);
+    table_.pull_bending(bending, pulls, four, first, last);
   });
 }
 
@@ -125,9 +130,7 @@ void SimdBending::begin_from_guess(float* u, const float* start, const BendingSt
   const float scale = is_first ? 0 : static_cast<float>(step.give / give_);
   const auto beyond = static_cast<float>(step.count - 1);
   float* const guess = soft_.guess();
-  float* const residual = soft_.residual();
   for_floats(team, [&](std::size_t first, std::size_t last) {
-    std::fill(residual + first, residual + last, 0.f);
     if (is_first) {
       std::fill(guess + first, guess + last, 0.f);
       if (is_damped) std::copy(start + first, start + last, from_.data() + first);
@@ -188,11 +191,8 @@ void SimdBending::bend_stiffly(float* u, const float* start, const BendingStep& 
 
 double SimdBending::solve_stiffly(const float* u, const float* start, const BendingStep& step,
                                   Team& team) {
-  float* const pulls = soft_.residual();
+  const float* const pulls = soft_.residual();
   double* const residual = stiff_.residual();
-  for_floats(team, [&](std::size_t first, std::size_t last) {
-    std::fill(pulls + first, pulls + last, 0.f);
-  });
   pull(u, start, step, team);
   for_floats(team, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) residual[i] = static_cast<double>(pulls[i]);
@@ -201,9 +201,41 @@ double SimdBending::solve_stiffly(const float* u, const float* start, const Bend
 }
 
 double SimdBending::energy(const float* u, double give, Team& team) {
+  return layout_.empty() ? 0 : energy_where_resolved(u, frame_.resolved(give), team);
+}
+
+/// The minimum over displacements d of the energy at u + d and d M d / (2 f), by a solution for d.
+double SimdBending::releasable_energy(float* u, double give, Team& team) {
   if (layout_.empty()) return 0;
+  const double whole = energy_where_resolved(u, std::numeric_limits<double>::max(), team);
+  const BendingStep step{1 / frame_.resolved(give), 1, 0};
+  pull(u, u, step, team);
+  float* const force = u;  // u has been read
+  std::copy_n(soft_.residual(), 4 * layout_.rows.slots(), force);
+  return whole - (frame_.is_factored() ? released(stiff_, force, step.law(), team)
+                                       : released(soft_, force, step.law(), team));
+}
+
+/// J, that a force gives on the way to where bending and inertia hold it.
+template <class Real>
+double SimdBending::released(BendingSystem<Real>& system, const float* force, const BendingLaw& law,
+                             Team& team) {
+  system.forget_guess();
+  std::copy_n(force, 4 * layout_.rows.slots(), system.residual());
+  system.solve(law, frame_.limits_of_energy(), team);
+  if (system.steps() == 0) return 0;
+  for_floats(team, [&](std::size_t first, std::size_t last) {
+    double sum = 0;
+    for (std::size_t i = first; i < last; ++i)
+      sum += static_cast<double>(force[i]) * static_cast<double>(system.change()[i]);
+    works_[first / kFloatsOfPart] = 0.5 * sum;
+  });
+  return std::accumulate(works_.begin(), works_.end(), 0.0);
+}
+
+double SimdBending::energy_where_resolved(const float* u, double resolved, Team& team) {
   simd::Bending bending = arrays(u);
-  bending.resolved = to_finite_float(frame_.resolved(give));
+  bending.resolved = to_finite_float(resolved);
   for_blocks(team, [&](bool four, std::size_t first, std::size_t last) {
     table_.bending_energy(bending, energies_.data(), four, first, last);
   });
@@ -212,7 +244,7 @@ double SimdBending::energy(const float* u, double give, Team& team) {
 
 std::size_t SimdBending::bytes() const {
   return bytes_of(spans_) + bytes_of(along_) + bytes_of(across_) + bytes_of(sides_) +
-         bytes_of(energies_) + bytes_of(from_) + soft_.bytes() + stiff_.bytes();
+         bytes_of(energies_) + bytes_of(works_) + bytes_of(from_) + soft_.bytes() + stiff_.bytes();
 }
 
 }  // namespace weft

@@ -29,6 +29,9 @@ class SimdBending {
   void bend(float* u, const float* start, double give, Team& team);
   /// J, with positions at base + u, of substeps of `give`.
   double energy(const float* u, double give, Team& team);
+  /// J, of it what substeps of `give` can release (small_steps.h). After the last substep, and
+  /// overwrites u.
+  double releasable_energy(float* u, double give, Team& team);
   /// The largest share of a force of bending that a solution of the frame has left.
   double error() const { return error_; }
   std::size_t bytes() const;
@@ -43,6 +46,10 @@ class SimdBending {
   }
   simd::Bending arrays(const float* u);
   void pull(const float* u, const float* start, const BendingStep& step, Team& team);
+  double energy_where_resolved(const float* u, double resolved, Team& team);
+  template <class Real>
+  double released(BendingSystem<Real>& system, const float* force, const BendingLaw& law,
+                  Team& team);
   bool begins_anew() const;
   void begin_from_guess(float* u, const float* start, const BendingStep& step, Team& team);
   void bend_softly(float* u, const float* start, const BendingStep& step, Team& team);
@@ -64,6 +71,7 @@ class SimdBending {
   kernels::AlignedVector<simd::EdgeSpans> sides_;           // of the base, for folded hinges
   kernels::AlignedVector<float> from_;                      // the start that damping measures from
   std::vector<double> energies_;                            // J, per block
+  std::vector<double> works_;                               // J, per part of the particles
 };
 
 }  // namespace weft

@@ -155,6 +155,7 @@ class StoredSmallSteps final : public SmallSteps {
   }
   void keep(Team& team) override { store_.keep(team); }
 
+  bool has_past() const override { return now_.has_past; }
   double law_error() override {
     const Points points = store_.points(false);
     const LawStep step = now_.law_step();
@@ -167,6 +168,9 @@ class StoredSmallSteps final : public SmallSteps {
   double rounding_error(double h) const override { return store_.rounding_error(h); }
   double bending_energy(double give, Team& team) override {
     return store_.bending_energy(give, team);
+  }
+  double releasable_bending_energy(kernels::VectorsView x, double give, Team& team) override {
+    return store_.releasable_bending_energy(x, give, team);
   }
   double deepest_in_body(Team& team) override {
     if (store_.bodies().empty() && free_.empty()) return 0;

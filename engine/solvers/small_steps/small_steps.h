@@ -88,6 +88,8 @@ class SmallSteps {
   /// After the last: local passes that look at all constraints.
   virtual LocalWork repair_everywhere(const SphereContacts& contacts, std::int64_t most_visits,
                                       Team& team) = 0;
+  /// Whether the motion of the frame goes on from that of the one before (begin()).
+  virtual bool has_past() const = 0;
   /// The largest error of the laws of all constraints, over rest_length, with springs only; and of
   /// those of triangles of fabric.
   virtual double law_error() = 0;
@@ -102,6 +104,12 @@ class SmallSteps {
   virtual double largest_move(Team& team) = 0;
   /// J, of the bending elements, where the particles are (BendingFrame::resolved()).
   virtual double bending_energy(double give, Team& team) = 0;
+  /// J, of the energy of bending at x that substeps of `give` can turn into motion. A swing of the
+  /// angular frequency w gives 1 / (1 + f w^2) of its own, f = 1 / BendingFrame::resolved(give):
+  /// all of it where a substep resolves it, and that of the softest that it does not resolve else.
+  /// bending_energy() holds each element to that by itself, and counts too little of a bend that
+  /// many stiff elements share. After the last substep.
+  virtual double releasable_bending_energy(kernels::VectorsView x, double give, Team& team) = 0;
   /// The error of the law of bending that the solutions of the frame have left (StepReport).
   virtual double bending_error() const = 0;
   /// After the last substep.
