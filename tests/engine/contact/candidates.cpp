@@ -167,7 +167,8 @@ void check(std::uint32_t seed, bool moves, bool deforms) {
   CHECK(asleep > 100);
 }
 
-TEST_CASE("pairs that may come near in an interval are among the candidates; others may sleep") {
+TEST_CASE("pairs that may come near in an interval are among the candidates; others may sleep" *
+          doctest::test_suite("long")) {
   SUBCASE("of a body that is still") { check(1, false, false); }
   SUBCASE("of one that moves") { check(1, true, false); }
   SUBCASE("of one that moves and deforms") { check(1, true, true); }

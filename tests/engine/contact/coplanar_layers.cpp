@@ -70,7 +70,8 @@ double height_of_second(const Cloth& cloth, std::uint32_t first_count) {
   return upper / uppers - lower / lowers;
 }
 
-TEST_CASE("two sheets in one plane come apart: the later one goes to its front") {
+TEST_CASE("two sheets in one plane come apart: the later one goes to its front" *
+          doctest::test_suite("long")) {
   for (const auto& [material, cells] : {std::pair{"cotton", 6u}, std::pair{"denim", 9u}}) {
     for (const Way way : {Way{true, true}, Way{true, false}, Way{false, true}, Way{false, false}}) {
       for (const int rate : {30, 60, 240}) {

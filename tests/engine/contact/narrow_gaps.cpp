@@ -122,7 +122,8 @@ TEST_CASE("two bodies share the room between them in frames of a single substep,
   check_held({.table_is_mesh = true, .room = 1.5e-3, .friction = 0.3, .rate = 1000});
 }
 
-TEST_CASE("cloth that a ball presses into a table is not torn to and fro, nor said to be held") {
+TEST_CASE("cloth that a ball presses into a table is not torn to and fro, nor said to be held" *
+          doctest::test_suite("long")) {
   for (const double rate : {30.0, 60.0, 240.0}) {
     CAPTURE(rate);
     const Held held = press({.table_is_mesh = true,
@@ -137,7 +138,8 @@ TEST_CASE("cloth that a ball presses into a table is not torn to and fro, nor sa
   }
 }
 
-TEST_CASE("friction takes no more than was put in where closed forms overlap, and cloth is held") {
+TEST_CASE("friction takes no more than was put in where closed forms overlap, and cloth is held" *
+          doctest::test_suite("long")) {
   for (const double rate : {30.0, 60.0, 240.0}) {
     for (const bool by_ball : {false, true}) {
       CAPTURE(rate);

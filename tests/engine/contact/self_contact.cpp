@@ -394,7 +394,8 @@ SceneDescription laid_out(std::uint32_t size, double narrow) {
   return scene;
 }
 
-TEST_CASE("cloth that is put right at once goes nowhere through itself") {
+TEST_CASE("cloth that is put right at once goes nowhere through itself" *
+          doctest::test_suite("long")) {
   for (const double narrow : {0.9, 0.8, 0.7}) {
     CAPTURE(narrow);
     const SceneDescription scene = laid_out(25, narrow);

@@ -89,7 +89,8 @@ Capsule rod(double radius, double half_length = 0.5) {
   return {{0, 0, -half_length}, {0, 0, half_length}, radius, radius};
 }
 
-TEST_CASE("a sheet falls on a rod that is thin beside its cells, stays on it, and weighs on it") {
+TEST_CASE("a sheet falls on a rod that is thin beside its cells, stays on it, and weighs on it" *
+          doctest::test_suite("long")) {
   for_each_setting([](const Setting& setting) {
     for (const double radius : {1e-3, 2e-3}) {
       CAPTURE(radius);
@@ -207,7 +208,8 @@ double acceleration(const Setting& setting, double angle, double friction, doubl
   return 2 * way / (seconds * seconds);
 }
 
-TEST_CASE("a sheet on thin rods rests below the angle of friction, and slides by its law above") {
+TEST_CASE("a sheet on thin rods rests below the angle of friction, and slides by its law above" *
+          doctest::test_suite("long")) {
   constexpr double kDegree = std::numbers::pi / 180;
   for_each_setting([](const Setting& setting) {
     CHECK(std::abs(acceleration(setting, 14 * kDegree, 0.3, 0.5)) < 0.01);
@@ -220,7 +222,8 @@ TEST_CASE("a sheet on thin rods rests below the angle of friction, and slides by
   });
 }
 
-TEST_CASE("thin rods that spin take a sheet along at the speed of their surface") {
+TEST_CASE("thin rods that spin take a sheet along at the speed of their surface" *
+          doctest::test_suite("long")) {
   for_each_setting([](const Setting& setting) {
     constexpr double kRadius = 2e-3, kSpin = 50;
     SceneDescription scene = scene_of(sheet_of(setting, 7, kRadius + kThickness));

@@ -218,7 +218,8 @@ TEST_CASE("a cord that falls on another cord hangs over it") {
 
 /// A taut cord bears cloth by a tension that many short substeps alone can carry. (While substeps
 /// become shorter a frame may miss the tolerance, and tells it.)
-TEST_CASE("cloth lies over a cord whose links are longer than its cells, and is not thrown up") {
+TEST_CASE("cloth lies over a cord whose links are longer than its cells, and is not thrown up" *
+          doctest::test_suite("long")) {
   for_each_setting([](int rate, const char* material) {
     for (const std::uint32_t cells : {8u, 13u}) {
       for (const double sag : {0.04, 0.0}) {

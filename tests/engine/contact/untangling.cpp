@@ -226,7 +226,8 @@ void check_sewn_pocket(const char* material, std::uint32_t cells) {
   }
 }
 
-TEST_CASE("a pocket of cotton that is sewn on comes out, but for a few cells beside its seam") {
+TEST_CASE("a pocket of cotton that is sewn on comes out, but for a few cells beside its seam" *
+          doctest::test_suite("long")) {
   check_sewn_pocket("cotton", 8);
 }
 TEST_CASE("a pocket of denim that is sewn on comes out, but for a few cells beside its seam" *
@@ -246,7 +247,7 @@ TEST_CASE("without it what begins crossed stays so") {
   }
 }
 
-TEST_CASE("the cloth beside what is drawn apart crosses nothing") {
+TEST_CASE("the cloth beside what is drawn apart crosses nothing" * doctest::test_suite("long")) {
   for (const Fabric& fabric : kFabrics) {
     const SceneDescription scene = drawn(poked(fabric));
     const std::uint32_t n = fabric.cells, first = (n + 1) * (n + 1) + (n + 2) * (n + 1);

@@ -40,7 +40,8 @@ double lowest(const Cloth& cloth) { return -cloth.bounds().least.y; }
 
 /// It hangs at `scale` times its length, and is as much longer by its weight as at first: a strip
 /// of any size is under the same load, and longer by the load over the stiffness per width.
-TEST_CASE("a strip that grows hangs at as many times its length, at any frame rate") {
+TEST_CASE("a strip that grows hangs at as many times its length, at any frame rate" *
+          doctest::test_suite("long")) {
   for (const double stiffness : {40., 400.}) {
     for (const Cut cut : {Cut::none, Cut::first}) {
       for (const int rate : {30, 60, 240}) {

@@ -124,7 +124,8 @@ double stretch_at_tear(Cloth& cloth, const Strip& made, double rate) {
   return 2;
 }
 
-TEST_CASE("a strip without shear tears where its uncut threads carry the strength") {
+TEST_CASE("a strip without shear tears where its uncut threads carry the strength" *
+          doctest::test_suite("long")) {
   for (const std::uint32_t across : {8u, 16u}) {
     for (const std::uint32_t cut : {0u, across / 4}) {
       for (const double rate : kRates) {
@@ -154,7 +155,8 @@ TEST_CASE("a strip without shear tears where its uncut threads carry the strengt
   }
 }
 
-TEST_CASE("a strip of triangles tears where its tension is the strength") {
+TEST_CASE("a strip of triangles tears where its tension is the strength" *
+          doctest::test_suite("long")) {
   for (const std::uint32_t across : {8u, 16u}) {
     for (const double rate : kRates) {
       CAPTURE(across);
@@ -171,7 +173,8 @@ TEST_CASE("a strip of triangles tears where its tension is the strength") {
   }
 }
 
-TEST_CASE("a strip between pins tears at its strength by automatic substeps") {
+TEST_CASE("a strip between pins tears at its strength by automatic substeps" *
+          doctest::test_suite("long")) {
   for (const bool is_grid : {true, false}) {
     for (const std::uint32_t across : {8u, 16u}) {
       for (const double stiffness : {kStiffness, 10 * kStiffness}) {

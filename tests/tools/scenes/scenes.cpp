@@ -65,7 +65,8 @@ void check_at_rest(const SceneDescription& scene) {
   }
 }
 
-TEST_CASE("every edge of what is not sewn starts at its rest length, and every model builds") {
+TEST_CASE("every edge of what is not sewn starts at its rest length, and every model builds" *
+          doctest::test_suite("long")) {
   for (const scenes::BuiltIn& scene : scenes::list()) {
     if (is_sewn(made_scene(scene.name))) continue;
     for (const int size : {3, 5, 21, 101}) {
