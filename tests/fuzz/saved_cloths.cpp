@@ -5,6 +5,7 @@
 #include "engine/saving/sealed.h"
 #include "tests/fuzz/checks.h"
 #include "tests/fuzz/stepping.h"
+#include "tests/support/shapes.h"
 
 namespace weft::fuzz {
 namespace {
@@ -82,13 +83,7 @@ Kind kind_of(std::size_t kind) {
 }
 
 void add_bodies(Cloth& cloth) {
-  const TriangleMesh mesh{.vertices = {{-1, 0, -1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}},
-                          .triangles = {{0, 1, 2}, {0, 2, 3}},
-                          .two_sided = true};
-  for (const ShapeDescription& description :
-       {ShapeDescription(Plane{{0, 1, 0.1}, -0.5}), ShapeDescription(Ball{{}, 0.3}),
-        ShapeDescription(Capsule{{-0.3, 0, 0}, {0.3, 0, 0}, 0.1, 0.2}),
-        ShapeDescription(box({0.3, 0.3, 0.3})), ShapeDescription(mesh)}) {
+  for (const ShapeDescription& description : test::shapes_of_size(0.3)) {
     check(static_cast<bool>(cloth.add_body({.shape = build_shape(description).value(),
                                             .pose = {{1, -0.2, 0}, {0.1, 0.2, 0.3, 1}}})),
           "a body is added");

@@ -3,12 +3,12 @@
 
 #include <doctest/doctest.h>
 
-#include <array>
 #include <vector>
 
 #include "engine/bodies/body_shape.h"
 #include "engine/bodies/pose.h"
 #include "tests/support/random.h"
+#include "tests/support/shapes.h"
 
 namespace weft::test::kernels_reference_bodies {
 namespace {
@@ -30,10 +30,7 @@ reference::BodyMotion random_motion(const BodyShape& shape, Random& random) {
 }
 
 TEST_CASE("what is moved by less than it is clear of a body does not touch it") {
-  const std::array<ShapeDescription, 4> shapes{Plane{{0.2, 1, 0.1}, 0.03}, Ball{{}, 0.1},
-                                               Capsule{{0, -0.03, 0}, {0, 0.02, 0}, 0.02, 0.04},
-                                               box({0.17, 0.05, 0.16})};
-  for (const ShapeDescription& description : shapes) {
+  for (const ShapeDescription& description : closed_forms_of_size(0.1)) {
     const auto shape = build_shape(description).value();
     Random random(3);
     int clear_ways = 0, touching = 0, unclear_and_free = 0;
