@@ -21,7 +21,7 @@ void BodyClock::begin(std::span<const TravellingBody> bodies, double dt_substep,
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const TravellingBody& body = bodies[i];
     const reference::Placement at = body.travel.at(0);
-    motions_[i] = {.solid = body.shape->solid(),
+    motions_[i] = {.form = body.shape->form(),
                    .from = at,
                    .to = at,
                    .velocity = per_second * body.travel.way(),
@@ -55,16 +55,16 @@ void BodyClock::advance() {
 BodyClock::Box BodyClock::box(std::size_t body, int substeps) const {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const TravellingBody& b = bodies_[body];
-  const BodyShape& shape = *b.shape;
-  if (!shape.is_bounded())
+  const FormBounds& bounds = b.shape->bounds();
+  if (!bounds.has_end)
     return {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
   const double to = share(std::min(substeps_, done_ + substeps));
   const double angle = length(b.travel.turn()) * (to - share(done_));
   const reference::Placement ends[] = {b.travel.at(share(done_)), b.travel.at(to)};
   Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-  for (const Vector corner : shape.corners()) {
-    const double beyond = shape.spread() * b.thickness;
-    const double wide = shape.radius() + beyond + (length(corner) + beyond) * angle * angle / 8;
+  for (const Vector corner : bounds.corners) {
+    const double beyond = bounds.spread * b.thickness;
+    const double wide = bounds.radius + beyond + (length(corner) + beyond) * angle * angle / 8;
     for (const reference::Placement& end : ends) {
       const Vector at = end.placed(corner);
       box.low = {std::min(box.low.x, at.x - wide), std::min(box.low.y, at.y - wide),
@@ -77,11 +77,11 @@ BodyClock::Box BodyClock::box(std::size_t body, int substeps) const {
 }
 
 double BodyClock::fastest(std::size_t body) const {
-  const BodyShape& shape = *bodies_[body].shape;
+  const FormBounds& bounds = bodies_[body].shape->bounds();
   double farthest = 0;
-  for (const Vector corner : shape.corners()) farthest = std::max(farthest, length(corner));
+  for (const Vector corner : bounds.corners) farthest = std::max(farthest, length(corner));
   const reference::BodyMotion& motion = motions_[body];
-  return length(motion.velocity) + length(motion.spin) * (farthest + shape.radius());
+  return length(motion.velocity) + length(motion.spin) * (farthest + bounds.radius);
 }
 
 }  // namespace weft

@@ -25,7 +25,7 @@ class BodyClock {
     kernels::Vector low{}, high{};
   };
   Box box(std::size_t body, int substeps) const;
-  /// m/s: no point of the body is faster in this step; of what has no end, its centre.
+  /// m/s: no point of the body is faster in this step; of a plane, its centre.
   double fastest(std::size_t body) const;
   /// Intervals of some substeps: contacts of all kinds are looked for when one begins. It has as
   /// many of the substeps that are left as such a time has, one at least.

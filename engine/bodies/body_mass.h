@@ -4,6 +4,7 @@
 #include <weft/body.h>
 
 #include <array>
+#include <string>
 
 #include "kernels/vectors.h"
 
@@ -22,5 +23,8 @@ SymmetricTensor inverse(const SymmetricTensor& matrix);
 
 /// Whether there is a body of this mass and inertia.
 Result<void> validate(const BodyMass& mass);
+
+/// "a ball, a capsule or a hull"
+std::string shapes_with_mass();
 
 }  // namespace weft

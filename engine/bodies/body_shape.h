@@ -4,66 +4,67 @@
 #include <weft/body.h>
 
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "engine/bodies/body_moments.h"
 #include "engine/bodies/mesh_shape.h"
 #include "engine/gaps.h"
 #include "engine/saving/archive.h"
-#include "kernels/reference/bodies.h"
+#include "kernels/reference/forms.h"
 
 namespace weft {
 
-/// A shape in coordinates of the body: a plane, or the inside of several, or a capsule, or a mesh.
+/// Where a form is, in coordinates of the body.
+struct FormBounds {
+  /// Balls of the radius around these hold all of it; where it has no end, all that has one.
+  std::vector<kernels::Vector> corners{};
+  double radius = 0;  // m
+  /// By as many thicknesses a thickness makes it reach beyond that: faces that are moved out meet
+  /// far beyond a sharp edge.
+  double spread = 1;
+  bool has_end = true;
+};
+
+/// The parts of a shape that is no mesh.
+struct ShapeParts {
+  std::unique_ptr<const reference::Form> form{};
+  FormBounds bounds{};
+  /// At a density of 1; of what has no volume none.
+  std::optional<BodyMoments> moments{};
+  /// The surface that it is for cloth whose gaps it fits through; null: it fits through none.
+  std::unique_ptr<const MeshShape> thin{};
+  Widths widths{};
+};
+
+/// A shape in coordinates of the body: a closed form or a mesh.
 class BodyShape {
  public:
-  BodyShape(std::vector<reference::Face> faces, std::vector<kernels::Vector> corners)
-      : faces_(std::move(faces)),
-        corners_(std::move(corners)),
-        spread_(spread_of(faces_, corners_)) {
-    solid_.faces = faces_;
-  }
-  explicit BodyShape(const reference::Solid& capsule);
+  explicit BodyShape(ShapeParts parts) : parts_(std::move(parts)) {}
   explicit BodyShape(MeshShape mesh) : mesh_(std::make_unique<const MeshShape>(std::move(mesh))) {}
   BodyShape(const BodyShape&) = delete;
   BodyShape& operator=(const BodyShape&) = delete;
 
-  /// Null: it is none, but solid().
+  /// Null: it is none, but form().
   const MeshShape* mesh() const { return mesh_.get(); }
-  /// The surface that solid() is for cloth whose gaps it fits through; null: it is none.
-  const MeshShape* thin() const { return thin_.get(); }
-  const Widths& widths() const { return widths_; }
-  void set_thin(MeshShape thin, const Widths& widths) {
-    thin_ = std::make_unique<const MeshShape>(std::move(thin));
-    widths_ = widths;
-  }
+  /// Null: it is a mesh.
+  const reference::Form* form() const { return parts_.form.get(); }
+  const FormBounds& bounds() const { return parts_.bounds; }
+  const std::optional<BodyMoments>& moments() const { return parts_.moments; }
+  const MeshShape* thin() const { return parts_.thin.get(); }
+  const Widths& widths() const { return parts_.widths; }
   /// The shape that it was built of.
   const ShapeDescription& description() const { return description_; }
   void describe(const ShapeDescription& description) { description_ = description; }
 
-  const reference::Solid& solid() const { return solid_; }
-  /// A plane reaches to infinity.
-  bool is_bounded() const { return !corners_.empty(); }
-  /// Balls of radius() around these hold all of it.
-  const std::vector<kernels::Vector>& corners() const { return corners_; }
-  double radius() const { return radius_; }
-  /// By as many thicknesses a thickness makes it reach beyond that: faces that are moved out meet
-  /// far beyond a sharp edge.
-  double spread() const { return spread_; }
-
  private:
-  static double spread_of(const std::vector<reference::Face>& faces,
-                          const std::vector<kernels::Vector>& corners);
-
-  std::vector<reference::Face> faces_;
-  std::vector<kernels::Vector> corners_;
-  double radius_ = 0;
-  double spread_ = 1;
-  reference::Solid solid_;
-  std::unique_ptr<const MeshShape> mesh_, thin_;
-  Widths widths_;
+  ShapeParts parts_;
+  std::unique_ptr<const MeshShape> mesh_;
   ShapeDescription description_;
 };
+
+using BuiltShape = Result<std::shared_ptr<BodyShape>>;
 
 /// Null, or what the shape was built of.
 void visit_fields(const std::shared_ptr<const BodyShape>& shape, ArchiveWriter& archive);

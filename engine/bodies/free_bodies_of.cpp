@@ -83,11 +83,11 @@ double Bodies::fastest() const {
     const Entry& entry = bodies_[id];
     if (!entry.is_free()) continue;
     double reach = 0;
-    for (const Vector corner : entry.shape->corners())
+    for (const Vector corner : entry.shape->bounds().corners)
       reach = std::max(reach, length(corner - to_internal(entry.mass.centre)));
     const Vector spin = to_internal(velocity(id).angular);
-    fastest = std::max(
-        fastest, length(entry.motion.velocity) + (reach + entry.shape->radius()) * length(spin));
+    fastest = std::max(fastest, length(entry.motion.velocity) +
+                                    (reach + entry.shape->bounds().radius) * length(spin));
   }
   return fastest;
 }

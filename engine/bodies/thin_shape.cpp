@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "engine/bodies/convex_hull.h"
@@ -38,24 +39,24 @@ BoxTree tree_of(const MeshShape& mesh) {
   return tree;
 }
 
-MeshShape thin_capsule(const reference::Solid& capsule) {
-  const Vector a = capsule.a, b = a + capsule.length * capsule.axis;
-  const double at_b = capsule.radius - capsule.taper * capsule.length;
+MeshShape thin_thread(std::span<const Vector> places, std::vector<double> radii,
+                      std::span<const std::array<std::uint32_t, 2>> links) {
+  MeshShape mesh{.vertices{places.begin(), places.end()}, .two_sided = true, .is_open = true};
+  mesh.radii = std::move(radii);
+  mesh.radius = std::ranges::max(mesh.radii);
+  mesh.surface = links.empty() ? make_triangle_surface({}, places_of(places), std::array{0u})
+                               : make_triangle_surface({}, places_of(places), {}, links);
+  return with_tree(std::move(mesh));
+}
+
+MeshShape thin_capsule(const reference::Round& capsule) {
+  if (!(capsule.length > 0)) return thin_thread(std::array{capsule.a}, {capsule.radius}, {});
+  const Vector b = capsule.a + capsule.length * capsule.axis;
   // The cone around its balls is so much wider than they are.
   const double wide = 1 / std::sqrt(1 - capsule.taper * capsule.taper);
-  MeshShape mesh{.two_sided = true, .is_open = true};
-  if (capsule.length > 0) {
-    mesh.vertices = {a, b};
-    mesh.radii = {wide * capsule.radius, wide * at_b};
-    mesh.surface = make_triangle_surface({}, places_of(mesh.vertices), {},
-                                         std::array<std::array<std::uint32_t, 2>, 1>{{{0, 1}}});
-  } else {
-    mesh.vertices = {a};
-    mesh.radii = {capsule.radius};
-    mesh.surface = make_triangle_surface({}, places_of(mesh.vertices), std::array{0u});
-  }
-  mesh.radius = std::ranges::max(mesh.radii);
-  return with_tree(std::move(mesh));
+  return thin_thread(std::array{capsule.a, b},
+                     {wide * capsule.radius, wide * capsule.radius_at_end()},
+                     std::array<std::array<std::uint32_t, 2>, 1>{{{0, 1}}});
 }
 
 MeshShape thin_hull(std::span<const Vector> points) {

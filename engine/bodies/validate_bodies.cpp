@@ -1,5 +1,7 @@
 #include "engine/bodies/validate_bodies.h"
 
+#include <weft/shape_fields.h>
+
 #include <cmath>
 
 #include "engine/bodies/body_mass.h"
@@ -23,9 +25,10 @@ Result<void> validate(const Body& body) {
   if (auto r = validate_not_negative("thickness", body.thickness); !r) return r;
   if (auto r = validate_not_negative("friction", body.friction); !r) return r;
   if (!body.mass) return {};
-  if (body.shape->mesh() != nullptr || !body.shape->is_bounded())
-    return refuse("mass", "must be of a ball, a capsule or a hull",
-                  body.shape->mesh() != nullptr ? "a triangle mesh" : "a plane");
+  if (!body.shape->moments()) {
+    return refuse("mass", "must be of " + shapes_with_mass(),
+                  kind_of(body.shape->description()).text);
+  }
   return validate(*body.mass);
 }
 

@@ -43,7 +43,7 @@ void NarrowGaps::find_slots(const ContactScene& scene, const Near& near) {
       if (!is_closed_form(scene, body)) continue;
       const reference::BodyMotion& motion = scene.clock.motions()[body];
       const Vector place = motion.to.from_place(scene.points.start(slot));
-      at_one_.push_back({slot, body, motion.to.turned(gap_of(motion.solid, 0, place).normal)});
+      at_one_.push_back({slot, body, motion.to.turned(gap_of(*motion.form, 0, place).normal)});
     }
     // By less than what counts in a substep: normals turn until the interval is over.
     const auto are_against = [](const Facing& a, const Facing& b) {

@@ -14,7 +14,7 @@ BodyClearance clearance_of(const BodyClock& clock, std::size_t body, Vector x, d
   const bool starts = when == SubstepMoment::start;
   const reference::BodyMotion& motion = clock.motions()[body];
   const reference::Placement& at = starts ? motion.from : motion.to;
-  const reference::Gap gap = gap_of(motion.solid, 0, at.from_place(x));
+  const reference::Gap gap = gap_of(*motion.form, 0, at.from_place(x));
   return {static_cast<std::uint32_t>(body), at.turned(gap.normal), gap.gap,
           motion.thickness + radius, starts ? motion.velocity_at(x) : Vector{}};
 }

@@ -3,6 +3,7 @@
 
 #include <weft/report_fields.h>
 #include <weft/scene_fields.h>
+#include <weft/shape_fields.h>
 #include <weft/weft.h>
 
 #include <tuple>
@@ -67,31 +68,6 @@ void visit_fields(Is<Rotation> auto& rotation, auto& archive) {
 void visit_fields(Is<Pose> auto& pose, auto& archive) {
   auto& [position, rotation] = pose;
   archive(position, rotation);
-}
-
-void visit_fields(Is<Plane> auto& plane, auto& archive) {
-  auto& [normal, offset] = plane;
-  archive(normal, offset);
-}
-
-void visit_fields(Is<Ball> auto& ball, auto& archive) {
-  auto& [centre, radius] = ball;
-  archive(centre, radius);
-}
-
-void visit_fields(Is<Capsule> auto& capsule, auto& archive) {
-  auto& [a, b, radius_a, radius_b] = capsule;
-  archive(a, b, radius_a, radius_b);
-}
-
-void visit_fields(Is<Hull> auto& hull, auto& archive) {
-  auto& [points] = hull;
-  archive(points);
-}
-
-void visit_fields(Is<TriangleMesh> auto& mesh, auto& archive) {
-  auto& [vertices, triangles, two_sided] = mesh;
-  archive(vertices, triangles, two_sided);
 }
 
 void visit_fields(Is<BodyLoad> auto& load, auto& archive) {

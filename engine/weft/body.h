@@ -27,7 +27,7 @@
 /// bodies. It has no drag. A body much heavier than the cloth under it needs short substeps. A
 /// program with a physics engine calls move_body instead, and applies body_load to its own bodies.
 ///
-/// Planes, balls, capsules and hulls touch the particles of the cloth, by a contact in closed form.
+/// All shapes but meshes touch the particles of the cloth, by a contact in closed form.
 /// Fast particles are stopped too, if the last search (every 2 ms) found them near. The search
 /// predicts where particles go; tests/README.md says which bodies are too fast for that. An edge or
 /// a corner of a body that passes between the particles of a coarse cloth is not detected.

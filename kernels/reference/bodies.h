@@ -16,15 +16,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
-#include <span>
 
+#include "kernels/reference/corner.h"
+#include "kernels/reference/forms.h"
 #include "kernels/vectors.h"
 
 namespace weft::reference {
-
-using kernels::Vector;
 
 /// A rotation by the columns of its matrix, and where the origin comes to lie.
 struct Placement {
@@ -37,24 +35,9 @@ struct Placement {
   Vector from_place(Vector v) const { return turned_back(v - centre); }
 };
 
-/// Points with normal . x < offset are inside.
-struct Face {
-  Vector normal{};
-  double offset = 0;
-};
-
-/// Either the inside of faces, or the balls around a segment, in coordinates of the body.
-struct Solid {
-  std::span<const Face> faces{};  // empty: a capsule
-  Vector a{}, axis{};             // where it begins, and the unit vector along it
-  double length = 0;              // m; 0: a ball
-  double radius = 0;              // m, at a
-  double taper = 0;               // by which the radius falls, per length; |taper| < 1
-};
-
 /// How a body moves in a substep.
 struct BodyMotion {
-  Solid solid{};
+  const Form* form = nullptr;  // null: a mesh
   Placement from{}, to{};
   Vector velocity{}, spin{};  // m/s of its centre, rad/s
   double thickness = 0;       // m
@@ -70,104 +53,16 @@ struct BodyMotion {
 inline constexpr double kRecovery = 0.05, kFastestRecovery = 2;  // m/s
 inline constexpr double kRecoveryTime = 3e-3;                    // s
 
-/// The surface where a particle touches it, in coordinates of the world.
-struct Touch {
-  bool is_near = false;  // it is under the surface, or came through it
-  Vector normal{};
-  double gap = 0;  // m, over the surface's plane there; negative: under it
-};
-
-struct Gap {
-  double gap = std::numeric_limits<double>::infinity();
-  Vector normal{};
-};
-
-/// The ball of the capsule that is nearest to y is at the height y_axis - k d / sqrt(1 - k^2) over
-/// a, with k the taper and d the distance from the axis.
-inline Gap gap_of_capsule(const Solid& s, double thickness, Vector y) {
-  const Vector from_a = y - s.a;
-  const double height = dot(from_a, s.axis);
-  const double across = std::sqrt(std::max(0.0, dot(from_a, from_a) - height * height));
-  const double lean = s.taper / std::sqrt(1 - s.taper * s.taper);
-  const double at = std::clamp(height - lean * across, 0.0, s.length);
-  const Vector d = from_a - at * s.axis;
-  const double l = length(d);
-  return {l - (s.radius - at * s.taper) - thickness, kernels::direction(d, l)};
-}
-
-inline Gap gap_of_faces(const Solid& s, double thickness, Vector y) {
-  Gap largest{-std::numeric_limits<double>::infinity(), {}};
-  for (const Face& face : s.faces) {
-    const double gap = dot(face.normal, y) - face.offset - thickness;
-    if (gap > largest.gap) largest = {gap, face.normal};
-  }
-  return largest;
-}
-
-inline Gap gap_of(const Solid& s, double thickness, Vector y) {
-  return s.faces.empty() ? gap_of_capsule(s, thickness, y) : gap_of_faces(s, thickness, y);
-}
-
-/// The face through which the way from y0 to y1 enters the inside of all. For a way that begins
-/// there it is the face nearest to its beginning, where the way leads down from that or ends
-/// inside: a particle on a thin body, by rounding inside, does not leave it by the other side.
-inline Touch touch_faces(const Solid& s, double thickness, Vector y0, Vector y1) {
-  double enters = -1, leaves = std::numeric_limits<double>::infinity();
-  const Face* entry = nullptr;
-  Touch inside{.gap = 0};
-  double nearest = -std::numeric_limits<double>::infinity();
-  bool ends_inside = true;
-  for (const Face& face : s.faces) {
-    const double g0 = dot(face.normal, y0) - face.offset - thickness;
-    const double g1 = dot(face.normal, y1) - face.offset - thickness;
-    if (g0 > 0 && g1 > 0) return {};
-    ends_inside = ends_inside && g1 <= 0;
-    if (g0 > nearest) {
-      nearest = g0;
-      inside = {true, face.normal, g1};
-    }
-    if (g0 <= 0 && g1 <= 0) continue;
-    const double at = g0 / (g0 - g1);
-    if (g1 > 0) {
-      leaves = std::min(leaves, at);
-    } else if (at > enters) {
-      enters = at;
-      entry = &face;
-    }
-  }
-  if (entry == nullptr) return ends_inside || inside.gap < nearest ? inside : Touch{};
-  if (enters > leaves) return {};
-  return {true, entry->normal, dot(entry->normal, y1) - entry->offset - thickness};
-}
-
-/// On a way as long as a quarter of the thickness of the capsule the first point under the surface
-/// is looked for: a step by the gap never goes too far. On shorter ways, and on those that begin
-/// under the surface and lead out, the end is looked at.
-inline Touch touch_capsule(const Solid& s, double thickness, Vector y0, Vector y1) {
-  const Gap end = gap_of_capsule(s, thickness, y1);
-  const Vector way = y1 - y0;
-  const double l = length(way);
-  const double thin = std::min(s.radius, s.radius - s.taper * s.length) + thickness;
-  if (4 * l <= thin) return {end.gap < 0, end.normal, end.gap};
-  Gap here = gap_of_capsule(s, thickness, y0);
-  if (here.gap < 0 && dot(here.normal, way) >= 0) return {end.gap < 0, end.normal, end.gap};
-  const double near = 1e-6 * thin;
-  double at = 0;
-  for (int i = 0; i < 64 && here.gap > near; ++i) {
-    at += here.gap / l;
-    if (at >= 1) return {end.gap < 0, end.normal, end.gap};
-    here = gap_of_capsule(s, thickness, y0 + at * way);
-  }
-  const double gap = here.gap + (1 - at) * dot(here.normal, way);
-  return {gap < 0, here.normal, gap};
+inline Gap gap_of(const Form& form, double thickness, Vector y) {
+  Gap gap = form.gap(y);
+  gap.gap -= thickness;
+  return gap;
 }
 
 /// Where a particle of a radius touches the body that goes from start to x.
 inline Touch find_touch(const BodyMotion& body, Vector start, Vector x, double radius) {
   const Vector y0 = body.from.from_place(start), y1 = body.to.from_place(x);
-  const double thickness = body.thickness + radius;
-  Touch touch = body.solid.faces.empty() ? touch_capsule(body.solid, thickness, y0, y1)
-                                         : touch_faces(body.solid, thickness, y0, y1);
+  Touch touch = body.form->touch(body.thickness + radius, y0, y1);
   touch.normal = body.to.turned(touch.normal);
   return touch;
 }
@@ -176,24 +71,24 @@ inline Touch find_touch(const BodyMotion& body, Vector start, Vector x, double r
 inline Touch find_touch_or_gap(const BodyMotion& body, Vector start, Vector x, double radius) {
   Touch touch = find_touch(body, start, x, radius);
   if (touch.is_near) return touch;
-  const Gap gap = gap_of(body.solid, body.thickness + radius, body.to.from_place(x));
+  const Gap gap = gap_of(*body.form, body.thickness + radius, body.to.from_place(x));
   return {true, body.to.turned(gap.normal), gap.gap};
 }
 
-/// m, by which both ends of a way may be moved beside the body that the particle touches nothing:
-/// both are in front of one face by that, or the longest way that comes of it does not reach the
-/// capsule. Where it is not positive the particle may touch.
+/// m, by which a particle is under the surface where it ends; not positive: it is not.
+inline double depth_of(const BodyMotion& body, Vector start, Vector x, double radius) {
+  const Touch touch = find_touch(body, start, x, radius);
+  if (!touch.is_near) return 0;
+  if (body.form->is_convex()) return -touch.gap;
+  const Gap end = gap_of(*body.form, body.thickness + radius, body.to.from_place(x));
+  return -std::min(touch.gap, end.gap);
+}
+
+/// m, by which both ends of a way may be moved beside the body that the particle touches nothing.
+/// Where it is not positive the particle may touch.
 inline double clear_of(const BodyMotion& body, Vector start, Vector x, double radius) {
   const Vector y0 = body.from.from_place(start), y1 = body.to.from_place(x);
-  const double thickness = body.thickness + radius;
-  if (body.solid.faces.empty())
-    return (gap_of_capsule(body.solid, thickness, y1).gap - length(y1 - y0)) / 3;
-  double clear = -std::numeric_limits<double>::infinity();
-  for (const Face& face : body.solid.faces) {
-    const double nearer = std::min(dot(face.normal, y0), dot(face.normal, y1));
-    clear = std::max(clear, nearer - face.offset - thickness);
-  }
-  return clear;
+  return body.form->clear(body.thickness + radius, y0, y1);
 }
 
 /// The way of the particle beside the material of the body that was where it began.
@@ -205,9 +100,9 @@ inline Vector slip_of(const BodyMotion& body, Vector start, Vector x) {
 /// body.
 inline Vector kept_out(const BodyMotion& body, Vector start, Vector by, double radius) {
   const double thickness = body.thickness + radius;
-  const Gap to = gap_of(body.solid, thickness, body.from.from_place(start + by));
+  const Gap to = gap_of(*body.form, thickness, body.from.from_place(start + by));
   if (to.gap >= 0) return by;
-  const Gap from = gap_of(body.solid, thickness, body.from.from_place(start));
+  const Gap from = gap_of(*body.form, thickness, body.from.from_place(start));
   return by + std::max(0.0, std::min(0.0, from.gap) - to.gap) * body.from.turned(to.normal);
 }
 
@@ -234,9 +129,10 @@ struct ContactSums {
 
 /// How a point of the cloth and the surface under it have come together in a substep.
 struct PointContact {
-  Vector normal{};  // out of the body
-  double gap = 0;   // m, at the end; negative: under the surface
-  Vector slip{};    // m, of the point beside the material of the body
+  Vector normal{};    // out of the body
+  double gap = 0;     // m, at the end; negative: under the surface
+  Vector slip{};      // m, of the point beside the material of the body
+  double forces = 1;  // on all sides of a corner, over that along the normal
 };
 
 struct ContactResult {
@@ -256,27 +152,47 @@ inline double held_share(double along, double may, double& held) {
   return share;
 }
 
-/// The correction of a position by a contact.
-struct Stop {
+/// A push out of a surface.
+struct Push {
   double push = 0;       // m, along the normal; 0: nothing touches
   double comes_out = 0;  // m of it, that were deeper when the substep began
-  double slid = 0;       // m, along the surface, that friction has left
-  Vector by{};           // m, of the point, altogether
 };
-inline Stop stop(const PointContact& e, double friction, double h, ContactSums& done) {
-  const double toward = -dot(e.normal, e.slip), gap = e.gap + done.thinning.by;
+inline Push push_out(const PointContact& e, double toward, double h, ContactSums& done) {
+  const double gap = e.gap + done.thinning.by;
   const double approach = toward - done.thinning.retreat, began = gap + approach - done.came_out;
   const double recovers = h * std::min(kFastestRecovery, kRecovery - began / kRecoveryTime);
   const double target = std::min(0.0, began < 0 ? began + recovers : 0.0);
   const double push = target - gap;
   if (!(push > 0)) return {};
   const double stays_out = std::min(push, std::max(0.0, approach));
-  done.pushed += stays_out;
+  done.pushed += e.forces * stays_out;
   done.came_out += push - stays_out;
-  const Vector along = e.slip + toward * e.normal;
+  return {push, push - stays_out};
+}
+
+/// A way along the surface, of which friction takes a part.
+struct Rubbed {
+  double slid = 0;  // m, that friction has left
+  Vector by{};      // m, of the point
+};
+inline Rubbed rub(Vector along, double friction, ContactSums& done) {
   const double l = length(along);
   const double held = held_share(l, friction * (done.pushed + done.thinning.presses()), done.held);
-  return {push, push - stays_out, (1 - held) * l, push * e.normal - held * along};
+  return {(1 - held) * l, -held * along};
+}
+
+/// The correction of a position by a contact.
+struct Stop {
+  double push = 0, comes_out = 0;  // of Push
+  double slid = 0;                 // of Rubbed
+  Vector by{};                     // m, of the point, altogether
+};
+inline Stop stop(const PointContact& e, double friction, double h, ContactSums& done) {
+  const double toward = -dot(e.normal, e.slip);
+  const Push out = push_out(e, toward, h, done);
+  if (!(out.push > 0)) return {};
+  const Rubbed rubbed = rub(e.slip + toward * e.normal, friction, done);
+  return {out.push, out.comes_out, rubbed.slid, out.push * e.normal + rubbed.by};
 }
 
 /// The correction of the velocity of the point relative to the surface.
@@ -284,19 +200,28 @@ struct Slowed {
   Vector change{};   // m/s
   double taken = 0;  // m/s, along the surface
 };
-inline Slowed slow(Vector normal, Vector relative, double friction, double h, ContactSums& done) {
-  const double into = std::max(0.0, -dot(normal, relative) - done.thinning.retreat / h);
-  done.stopped += into;
-  const Vector sliding = relative - dot(normal, relative) * normal;
+inline Slowed slow_along(Vector sliding, double friction, double h, ContactSums& done) {
   const double l = length(sliding);
   const double may = friction * (done.stopped + done.thinning.presses() / h);
   const double slowed = held_share(l, may, done.slowed);
-  return {into * normal - slowed * sliding, slowed * l};
+  return {-slowed * sliding, slowed * l};
+}
+/// The velocity into the surface, which is stopped. forces: of PointContact.
+inline double stop_velocity(double into, double forces, double h, ContactSums& done) {
+  const double stopped = std::max(0.0, into - done.thinning.retreat / h);
+  done.stopped += forces * stopped;
+  return stopped;
+}
+inline Slowed slow(Vector normal, Vector relative, double friction, double h, ContactSums& done) {
+  const double into = stop_velocity(-dot(normal, relative), 1, h, done);
+  const Vector sliding = relative - dot(normal, relative) * normal;
+  const Slowed slowed = slow_along(sliding, friction, h, done);
+  return {into * normal + slowed.change, slowed.taken};
 }
 
-/// v: the velocity at x. touch: of that way.
-inline ContactResult solve_contact(const BodyMotion& body, const Touch& touch, Vector start,
-                                   Vector x, Vector v, ContactSums& done) {
+/// By one surface: of a convex form.
+inline ContactResult solve_one_side(const BodyMotion& body, const Touch& touch, Vector start,
+                                    Vector x, Vector v, ContactSums& done) {
   ContactResult result{.start = start, .x = x, .v = v};
   if (!touch.is_near) return result;
   const Vector n = touch.normal;
@@ -313,12 +238,61 @@ inline ContactResult solve_contact(const BodyMotion& body, const Touch& touch, V
   return result;
 }
 
+/// Pushes the particle out of one side of a hollow after the other. Returns how many pushed.
+inline int push_out_of_sides(const BodyMotion& body, Touch touch, double radius, ContactSums& done,
+                             Corner& corner, ContactResult& result) {
+  int sides = 0;
+  for (; sides < Corner::kSides && touch.is_near; ++sides) {
+    const auto [n, sine, forces] = corner.add(touch.normal);
+    const Vector slip = slip_of(body, result.start, result.x);
+    const Push out = push_out({n, touch.gap / sine, slip, forces}, -dot(n, slip), body.h, done);
+    if (!(out.push > 0)) break;
+    result.normal = n;
+    result.push += out.push;
+    result.start = result.start + out.comes_out * n;
+    result.x = result.x + out.push * n;
+    const double into = -dot(n, result.v - body.velocity_at(result.x));
+    result.v = result.v + stop_velocity(into, forces, body.h, done) * n;
+    touch = find_touch(body, result.start, result.x, radius);
+  }
+  return sides;
+}
+
+/// By the sides of a hollow, and then by the friction of all of them.
+inline ContactResult solve_sides(const BodyMotion& body, const Touch& touch, Vector start, Vector x,
+                                 Vector v, double radius, ContactSums& done) {
+  ContactResult result{.start = start, .x = x, .v = v};
+  Corner corner;
+  const int sides = push_out_of_sides(body, touch, radius, done, corner, result);
+  result.is_touching = sides > 0;
+  if (!result.is_touching) return result;
+  const Rubbed rubbed =
+      rub(corner.free_part(slip_of(body, result.start, result.x)), body.friction, done);
+  result.x = result.x + rubbed.by;
+  const Vector sliding = corner.free_part(result.v - body.velocity_at(result.x));
+  const Slowed slowed = slow_along(sliding, body.friction, body.h, done);
+  result.v = result.v + slowed.change;
+  result.friction = 2 * slowed.taken * (rubbed.slid / body.h);
+  if (sides == 1) return result;
+  // Friction may take it back into a side that it was pushed away from.
+  const Touch again = find_touch(body, result.start, result.x, radius);
+  push_out_of_sides(body, again, radius, done, corner, result);
+  return result;
+}
+
+/// v: the velocity at x. touch: of that way.
+inline ContactResult solve_contact(const BodyMotion& body, const Touch& touch, Vector start,
+                                   Vector x, Vector v, double radius, ContactSums& done) {
+  return body.form->is_convex() ? solve_one_side(body, touch, start, x, v, done)
+                                : solve_sides(body, touch, start, x, v, radius, done);
+}
+
 /// A particle that contacts within the cloth have moved in rounds. Its contact is solved if it came
 /// under the surface. Otherwise it follows the body as far as that has pushed too much. touch: its
 /// gap and normal may be those of a particle over the surface.
 inline ContactResult follow(const BodyMotion& body, const Touch& touch, Vector start, Vector x,
-                            Vector v, ContactSums& done) {
-  ContactResult result = solve_contact(body, touch, start, x, v, done);
+                            Vector v, double radius, ContactSums& done) {
+  ContactResult result = solve_contact(body, touch, start, x, v, radius, done);
   if (result.is_touching) return result;
   const double back = std::min(touch.gap + done.thinning.by, done.pushed);
   if (!(back > 0)) return result;

@@ -1,10 +1,11 @@
 /// Particles against bodies in lanes: reference::solve_contact (kernels/reference/bodies.h), which
 /// has the formulas. A pair is a block of particles (in_rows.h) and a body that may be near to it;
-/// blocks without a contact are read and left. Particles whose way is long beside a
-/// capsule are left to the reference.
+/// blocks without a contact are read and left. Particles whose way is long beside a round form are
+/// left to the reference.
 #pragma once
 
 #include "kernels/reference/bodies.h"
+#include "kernels/simd/fields.h"
 #include "kernels/simd/in_rows.h"
 
 namespace weft::simd {
@@ -25,7 +26,7 @@ struct TouchLanes {
 };
 
 /// By the gap at its end.
-[[gnu::always_inline]] inline void touch_capsule(TouchLanes& p, const BodyFrame& f, Floats radius) {
+[[gnu::always_inline]] inline void touch_round(TouchLanes& p, const BodyFrame& f, Floats radius) {
   FloatVector axis = splat(f.axis), from_a = p.x - splat(f.a);
   const Floats none(0.f), height = dot(from_a, axis);
   const Floats across =
@@ -107,14 +108,21 @@ template <class At>
   carried = fused(r.y, splat(f.turn + 3), carried);
   carried = fused(r.z, splat(f.turn + 6), carried);
   p.slip = moved - carried;
-  const Floats radius = load(block.radius + lane);
-  if (f.face_count == 0)
-    touch_capsule(p, f, radius);
-  else if (f.face_count == 1)
-    touch_plane(p, f, radius);
-  else
-    touch_hull(p, f, radius);
-  p.near = p.near && load(block.mass + lane) > Floats(0.f);
+  const Floats radius = load(block.radius + lane), mass = load(block.mass + lane);
+  switch (f.kind) {
+    case BodyKind::plane:
+      touch_plane(p, f, radius);
+      break;
+    case BodyKind::hull:
+      touch_hull(p, f, radius);
+      break;
+    case BodyKind::round:
+      touch_round(p, f, radius);
+      break;
+    case BodyKind::field:  // solve_field_pair
+      p.near = mass < Floats(0.f);
+  }
+  p.near = p.near && mass > Floats(0.f);
   return p;
 }
 
@@ -147,7 +155,7 @@ template <class At>
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
     FloatVector u = at.get(flight.u, block.place, lane);
     TouchLanes p = begin_touch(h, block, f, lane, at, u);
-    if (f.face_count == 0) {
+    if (f.kind == BodyKind::round) {
       const FloatMask is_quick =
           dot(p.slip, p.slip) > Floats(f.short_way) && load(block.mass + lane) > none;
       quick |= bits(is_quick) << lane;
@@ -222,20 +230,30 @@ template <class At>
   h.quick[i] = static_cast<std::uint16_t>(quick);
 }
 
+template <class At>
+[[gnu::always_inline]] inline void solve_contacts_at(const BodySolve& h, std::size_t first,
+                                                     std::size_t last, At at) {
+  for (std::size_t i = first; i < last; ++i) {
+    if (h.frames[h.pairs[i].body].kind == BodyKind::field)
+      solve_field_pair(h, i);
+    else
+      solve_pair(h, i, at);
+  }
+}
+
 void solve_body_contacts(const BodySolve& hold, std::size_t first, std::size_t last) {
   const BodySolve h = hold;
-  for (std::size_t i = first; i < last; ++i) {
-    if (h.woven)
-      solve_pair(h, i, InWovenRow{});
-    else
-      solve_pair(h, i, InQuads{});
-  }
+  if (h.woven)
+    solve_contacts_at(h, first, last, InWovenRow{});
+  else
+    solve_contacts_at(h, first, last, InQuads{});
 }
 
 template <class At>
 [[gnu::always_inline]] inline Floats depths_of_pair(const BodySolve& h, std::size_t i, At at) {
   const BodyBlock& block = h.blocks[h.pairs[i].block];
   const BodyFrame& f = h.frames[h.pairs[i].body];
+  if (f.kind == BodyKind::field) return Floats(depth_of_field_pair(h, i));
   Floats deepest(0.f);
   for (std::uint32_t lane = 0; lane < kernels::kLanes; lane += kFloats) {
     FloatVector u = at.get(h.flight.u, block.place, lane);

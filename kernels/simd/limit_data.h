@@ -7,6 +7,10 @@
 #include "kernels/simd/lane_vectors.h"
 #include "kernels/simd/small_step_data.h"
 
+namespace weft::reference {
+struct BodyMotion;
+}
+
 namespace weft::simd {
 
 /// Anchors (anchors.h) of kLanes particles that stand in a row of memory; those without one have an
@@ -47,15 +51,21 @@ struct alignas(64) BodyBlock {
 struct BodyFace {
   float from[4], to[4];
 };
+/// How lanes find the gap of a body; not of a field (fields.h).
+enum class BodyKind : std::uint8_t { plane, hull, round, field };
+
 /// A body in a substep. Places are from `origin`, which is near to the cloth.
 struct BodyFrame {
   float origin[3];
+  BodyKind kind = BodyKind::field;
+  const reference::BodyMotion* motion = nullptr;  // of a field
   const BodyFace* faces = nullptr;
-  std::uint32_t face_count = 0;                       // 0: a capsule, as it is in the end
-  float a[3], axis[3];                                // where it begins, and its direction
+  std::uint32_t face_count = 0;
+  // A round form, as it is in the end: where it begins, and its direction.
+  float a[3], axis[3];
   float length = 0, radius = 0, taper = 0, lean = 0;  // lean: taper / sqrt(1 - taper^2)
-  float short_way = 0;                                // m^2: of ways that are looked at in full
-  float centre_from[3], way[3], turn[9];              // turn: a rotation, less 1, by columns
+  float short_way = 0;  // m^2: of ways that are looked at in full, beside a round form
+  float centre_from[3], way[3], turn[9];  // turn: a rotation, less 1, by columns
   float centre_to[3], velocity[3], spin[3];
   float friction = 0;
 };

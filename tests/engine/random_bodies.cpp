@@ -131,7 +131,7 @@ std::optional<reference::Gap> gap_over(const Solid& solid, Vec3 x) {
   const auto at = PoseTravel({pose.position, normalized(pose.rotation)},
                              {pose.position, normalized(pose.rotation)})
                       .at(0);
-  reference::Gap gap = gap_of(shape->solid(), 0, at.from_place({x.x, x.y, x.z}));
+  reference::Gap gap = shape->form()->gap(at.from_place({x.x, x.y, x.z}));
   gap.normal = at.turned(gap.normal);
   return gap;
 }

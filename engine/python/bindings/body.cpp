@@ -1,5 +1,6 @@
 #include <pybind11/stl.h>
 #include <weft/body.h>
+#include <weft/shape_fields.h>
 
 #include "arrays.h"
 #include "fields.h"
@@ -10,24 +11,20 @@ namespace weft::python {
 
 namespace {
 
+template <class Shape>
+void add_shape(py::module_& m) {
+  Fields<Shape> shape(m, kShapeKind<Shape>.type, kShapeKind<Shape>.about);
+  for_each_part_field<Shape>([&](const auto& field) {
+    if constexpr (requires { shape.array(field.name, field.member, field.text); })
+      shape.array(field.name, field.member, field.text);
+    else
+      shape.field(field.name, field.member, field.text);
+  });
+}
+
 void add_shapes(py::module_& m) {
-  Fields<Plane> plane(m, "Plane", "The half space where normal . x < offset.");
-  plane.field("normal", &Plane::normal, "of any length but 0")
-      .field("offset", &Plane::offset, "in units of the normal");
-  Fields<Ball> ball(m, "Ball", "A ball.");
-  ball.field("centre", &Ball::centre, "m").field("radius", &Ball::radius, "m");
-  Fields<Capsule> capsule(m, "Capsule", "All balls whose centres lie on a segment.");
-  capsule.field("a", &Capsule::a, "m")
-      .field("b", &Capsule::b, "m")
-      .field("radius_a", &Capsule::radius_a, "m")
-      .field("radius_b", &Capsule::radius_b, "m");
-  Fields<Hull> hull(m, "Hull", "The convex hull of points.");
-  hull.array("points", &Hull::points, "m, an array (n, 3)");
+  for_each_shape([&]<class Shape> { add_shape<Shape>(m); });
   m.def("box", &box, py::arg("size"), "A box around the origin with these edges, as a hull.");
-  Fields<TriangleMesh> mesh(m, "TriangleMesh", "A surface of triangles, rigid or deforming.");
-  mesh.array("vertices", &TriangleMesh::vertices, "m, an array (n, 3)")
-      .array("triangles", &TriangleMesh::triangles, "an array (n, 3) of vertices")
-      .field("two_sided", &TriangleMesh::two_sided, "keeps cloth on the side where it is");
   py::class_<HeldShape>(m, "BodyShape", "A shape that is prepared. Cloths share it.");
   m.def(
       "build_shape",
@@ -35,7 +32,7 @@ void add_shapes(py::module_& m) {
         const py::gil_scoped_release release;
         return HeldShape{value_of(build_shape(shape))};
       },
-      py::arg("shape"), "Checks a Plane, Ball, Capsule, Hull or TriangleMesh and prepares it.");
+      py::arg("shape"), "Checks a Plane, a Ball or another shape and prepares it.");
 }
 
 }  // namespace
@@ -54,7 +51,7 @@ void add_body(py::module_& m) {
       [](const Given<HeldShape>& shape, const Given<double>& density) {
         return value_of(mass_of(*taken(shape, "shape").shape, taken(density, "density")));
       },
-      py::arg("shape"), py::arg("density"), "The mass of a full ball, capsule or hull.");
+      py::arg("shape"), py::arg("density"), "The mass of a shape that is full.");
   Fields<Body> body(m, "Body", "A body for Cloth.add_body.");
   body.property(
           "shape",

@@ -15,7 +15,7 @@ namespace weft {
 inline BodyTouch touch_of(const BodyClock& clock, std::size_t body, std::uint32_t slot,
                           kernels::Vector x, double push) {
   const reference::BodyMotion& motion = clock.motions()[body];
-  const reference::Gap gap = gap_of(motion.solid, 0, motion.to.from_place(x));
+  const reference::Gap gap = gap_of(*motion.form, 0, motion.to.from_place(x));
   const kernels::Vector normal = motion.to.turned(gap.normal);
   return {slot, clock.bodies()[body].id, push, x - gap.gap * normal, normal};
 }
@@ -25,7 +25,7 @@ class NearestForm {
  public:
   void consider(const BodyClock& clock, std::uint32_t body, kernels::Vector x) {
     const reference::BodyMotion& motion = clock.motions()[body];
-    const reference::Gap gap = gap_of(motion.solid, motion.thickness, motion.to.from_place(x));
+    const reference::Gap gap = gap_of(*motion.form, motion.thickness, motion.to.from_place(x));
     if (gap.gap >= least_) return;
     least_ = gap.gap;
     body_ = body;

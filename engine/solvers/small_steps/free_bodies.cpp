@@ -51,17 +51,17 @@ void FreeBodies::begin_course(std::size_t body) {
     course.from = product(rotation_by(-1.0 * turned),
                           course.inertia.flight(motion.rotation, motion.momentum, -h));
   }
-  const BodyShape& shape = *b.shape;
-  for (const Vector corner : shape.corners())
-    course.middle = course.middle + (1 / static_cast<double>(shape.corners().size())) * corner;
-  for (const Vector corner : shape.corners())
+  const FormBounds& bounds = b.shape->bounds();
+  for (const Vector corner : bounds.corners)
+    course.middle = course.middle + (1 / static_cast<double>(bounds.corners.size())) * corner;
+  for (const Vector corner : bounds.corners)
     course.reach = std::max(course.reach, length(corner - course.middle));
-  course.reach += shape.radius() + shape.spread() * b.thickness;
+  course.reach += bounds.radius + bounds.spread * b.thickness;
   course.impulse.id = b.id;
 
   FreeBodyNow& now = now_[body];
   now.inverse_mass = frame_.stands ? 0 : 1 / b.mass.mass;
-  now.motion = {.solid = shape.solid(),
+  now.motion = {.form = b.shape->form(),
                 .velocity = frame_.stands ? Vector{} : motion.velocity,
                 .spin = frame_.stands ? Vector{} : spin,
                 .thickness = b.thickness,

@@ -217,7 +217,7 @@ void FreeBodies::read_contacts(const Points& points, std::vector<BodyTouch>& con
     if (!contact.touches) continue;
     const reference::BodyMotion& motion = now_[contact.body].motion;
     const kernels::Vector x = points.position(contact.slot);
-    const reference::Gap gap = gap_of(motion.solid, 0, motion.to.from_place(x));
+    const reference::Gap gap = gap_of(*motion.form, 0, motion.to.from_place(x));
     const kernels::Vector normal = motion.to.turned(gap.normal);
     contacts.push_back({contact.slot, bodies_[contact.body].id,
                         model_.inverse_mass[contact.slot] * contact.push, x - gap.gap * normal,

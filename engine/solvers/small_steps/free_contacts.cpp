@@ -29,7 +29,7 @@ Vector FreeContactSweep::give(const Row& row, Vector impulse) const {
 reference::Touch touch_of_free(const reference::BodyMotion& body, Vector start, Vector x,
                                double radius) {
   const reference::Touch touch = find_touch(body, start, x, radius);
-  const reference::Gap gap = gap_of(body.solid, body.thickness + radius, body.to.from_place(x));
+  const reference::Gap gap = gap_of(*body.form, body.thickness + radius, body.to.from_place(x));
   const bool is_shallow = gap.gap < 0 && gap.gap > -body.thickness;
   if (touch.is_near && !is_shallow) return touch;
   return {true, body.to.turned(gap.normal), gap.gap};

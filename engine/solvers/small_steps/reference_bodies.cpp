@@ -98,7 +98,8 @@ TouchedSurface ReferenceBodies::solve_with(std::uint32_t slot, ContactParticle& 
     const reference::BodyMotion& body = clock_.motions()[i];
     reference::ContactSums& sums = contact_sums_[slot * clock_.bodies().size() + i];
     const reference::Touch touch = look(body, at.start, at.x, radius(slot));
-    const reference::ContactResult result = solve_by(body, touch, at.start, at.x, at.v, sums);
+    const reference::ContactResult result =
+        solve_by(body, touch, at.start, at.x, at.v, radius(slot), sums);
     if (!result.is_touching) continue;
     surface = {static_cast<std::uint32_t>(i), body.velocity_at(result.x)};
     const double momentum = model_.mass[slot] * momentum_share_;
@@ -151,8 +152,8 @@ double ReferenceBodies::deepest(const kernels::Vectors& start, const kernels::Ve
     for (std::size_t i = 0; i < clock_.bodies().size(); ++i) {
       if (clock_.bodies()[i].mesh != nullptr) continue;
       const reference::BodyMotion& body = clock_.motions()[i];
-      const reference::Touch touch = find_touch(body, start[slot], x[slot], radius(slot));
-      if (touch.is_near) deepest = std::max(deepest, -touch.gap - spared_by(i, slot));
+      const double depth = depth_of(body, start[slot], x[slot], radius(slot));
+      if (depth > 0) deepest = std::max(deepest, depth - spared_by(i, slot));
     }
   }
   return deepest;

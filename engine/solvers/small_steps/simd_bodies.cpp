@@ -10,6 +10,7 @@
 #include "engine/solvers/small_steps/body_touches.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/tuning.h"
+#include "kernels/simd/fields.h"
 
 namespace weft {
 
@@ -176,36 +177,15 @@ TouchedSurface SimdBodies::solve_with(std::uint32_t slot, ContactParticle& parti
   const std::size_t block = place / kLanes, lane = place % kLanes;
   for (std::size_t i = pairs_of_[block]; i < pairs_of_[block + 1]; ++i) {
     const BodyMotion& body = clock_.motions()[pairs_[i].body];
-    const auto number = [](float x) { return static_cast<double>(x); };
-    const reference::Touch touch =
-        look(body, particle.start, particle.x, number(layout_.blocks[block].radius[lane]));
+    const auto radius = static_cast<double>(layout_.blocks[block].radius[lane]);
+    const reference::Touch touch = look(body, particle.start, particle.x, radius);
     if (!touch.is_near) continue;
-    simd::BodyContactSums& lanes = contact_sums_[i];
-    reference::ContactSums sums{number(lanes.pushed[lane]),
-                                number(lanes.held[lane]),
-                                number(lanes.stopped[lane]),
-                                number(lanes.slowed[lane]),
-                                number(lanes.came_out[lane]),
-                                {number(lanes.thinned_by[lane]), number(lanes.retreat[lane])}};
+    reference::ContactSums sums = simd::sums_at(contact_sums_[i], lane);
     const reference::ContactResult result =
-        solve_by(body, touch, particle.start, particle.x, particle.v, sums);
+        solve_by(body, touch, particle.start, particle.x, particle.v, radius, sums);
     if (!result.is_touching) continue;
-    lanes.pushed[lane] = static_cast<float>(sums.pushed);
-    lanes.held[lane] = static_cast<float>(sums.held);
-    lanes.stopped[lane] = static_cast<float>(sums.stopped);
-    lanes.slowed[lane] = static_cast<float>(sums.slowed);
-    lanes.came_out[lane] = static_cast<float>(sums.came_out);
-    const double momentum = model_.mass[slot] * momentum_share_;
-    const Vector impulse = momentum * (result.v - particle.v);
-    const Vector moment = cross(result.x - body.to.centre, impulse);
-    const auto add = [&](simd::LaneVectors& sum, Vector v) {
-      sum.x[lane] += static_cast<float>(v.x);
-      sum.y[lane] += static_cast<float>(v.y);
-      sum.z[lane] += static_cast<float>(v.z);
-    };
-    add(lanes.linear, impulse);
-    add(lanes.angular, moment);
-    lanes.friction[lane] += static_cast<float>(momentum * result.friction);
+    simd::put_sums(contact_sums_[i], lane, sums, body, result, particle.v,
+                   model_.mass[slot] * momentum_share_);
     const auto bit = static_cast<std::uint16_t>(1u << lane);
     touching_[i] = static_cast<std::uint16_t>(touching_[i] | bit);
     particle = {result.start, result.x, result.v};

@@ -3,44 +3,16 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/solvers/small_steps/body_frame.h"
 #include "engine/solvers/small_steps/simd_bodies.h"
 #include "engine/solvers/small_steps/small_steps_layout.h"
 #include "engine/tuning.h"
 
 namespace weft {
-namespace {
 
 using kernels::kLanes;
 using kernels::Vector;
 using reference::BodyMotion;
-
-void set(float (&to)[3], Vector v) {
-  to[0] = static_cast<float>(v.x);
-  to[1] = static_cast<float>(v.y);
-  to[2] = static_cast<float>(v.z);
-}
-
-void set_face(float (&to)[4], const reference::Placement& at, const reference::Face& face,
-              double thickness, Vector origin) {
-  const Vector n = at.turned(face.normal);
-  to[0] = static_cast<float>(n.x);
-  to[1] = static_cast<float>(n.y);
-  to[2] = static_cast<float>(n.z);
-  to[3] = static_cast<float>(face.offset + thickness + dot(n, at.centre - origin));
-}
-
-/// The columns of the rotation from one placement to another, less 1.
-void set_turn(float (&to)[9], const BodyMotion& body) {
-  const Vector unit[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vector column = body.to.turned(body.from.turned_back(unit[k])) - unit[k];
-    to[3 * k] = static_cast<float>(column.x);
-    to[3 * k + 1] = static_cast<float>(column.y);
-    to[3 * k + 2] = static_cast<float>(column.z);
-  }
-}
-
-}  // namespace
 
 SimdBodies::Extent SimdBodies::extent_of(std::size_t block, int substeps,
                                          const simd::Flight& flight, const float* base) const {
@@ -82,7 +54,7 @@ bool SimdBodies::may_touch(const Extent& extent, std::size_t body, const BodyClo
   const Vector middle = extent.middle();
   const double moves =
       time * (length(motion.velocity) + length(motion.spin) * length(middle - motion.to.centre));
-  const reference::Gap gap = gap_of(motion.solid, motion.thickness, motion.to.from_place(middle));
+  const reference::Gap gap = gap_of(*motion.form, motion.thickness, motion.to.from_place(middle));
   return gap.gap <= extent.radius() + moves;
 }
 
@@ -131,41 +103,20 @@ void SimdBodies::search(const simd::Flight& flight, const float* base) {
 }
 
 void SimdBodies::write_frames() {
-  frames_.resize(clock_.bodies().size());
-  faces_.clear();
-  for (const BodyMotion& body : clock_.motions()) {
-    if (body.solid.faces.empty()) continue;
-    for (const reference::Face& face : body.solid.faces) {
-      simd::BodyFace& to = faces_.emplace_back();
-      set_face(to.from, body.from, face, body.thickness, origin_);
-      set_face(to.to, body.to, face, body.thickness, origin_);
-    }
-  }
+  const std::span<const BodyMotion> motions = clock_.motions();
+  const auto count_of = [](const BodyMotion& body) {
+    return body.form != nullptr ? body.form->faces().size() : 0;
+  };
+  std::size_t faces = 0;
+  for (const BodyMotion& body : motions) faces += count_of(body);
+  frames_.resize(motions.size());
+  faces_.resize(faces);
   std::size_t first = 0;
-  for (std::size_t i = 0; i < frames_.size(); ++i) {
-    const BodyMotion& body = clock_.motions()[i];
-    simd::BodyFrame& frame = frames_[i];
-    const reference::Solid& solid = body.solid;
-    set(frame.origin, origin_);
-    frame.faces = faces_.data() + first;
-    frame.face_count = static_cast<std::uint32_t>(solid.faces.size());
-    first += solid.faces.size();
-    set(frame.a, body.to.placed(solid.a) - origin_);
-    set(frame.axis, body.to.turned(solid.axis));
-    const double thin = std::min(solid.radius, solid.radius - solid.taper * solid.length);
-    const double short_way = (thin + body.thickness) / 4;
-    frame.length = static_cast<float>(solid.length);
-    frame.radius = static_cast<float>(solid.radius + body.thickness);
-    frame.taper = static_cast<float>(solid.taper);
-    frame.lean = static_cast<float>(solid.taper / std::sqrt(1 - solid.taper * solid.taper));
-    frame.short_way = static_cast<float>(short_way * short_way);
-    set(frame.centre_from, body.from.centre - origin_);
-    set(frame.way, body.to.centre - body.from.centre);
-    set_turn(frame.turn, body);
-    set(frame.centre_to, body.to.centre - origin_);
-    set(frame.velocity, body.velocity);
-    set(frame.spin, body.spin);
-    frame.friction = static_cast<float>(body.friction);
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    if (motions[i].form == nullptr) continue;  // a mesh, which no pair names
+    const std::size_t count = count_of(motions[i]);
+    write_frame(frames_[i], std::span(faces_).subspan(first, count), motions[i], origin_);
+    first += count;
   }
 }
 

@@ -26,7 +26,7 @@ reference::BodyMotion random_motion(const BodyShape& shape, Random& random) {
     return Pose{{at.x, at.y, at.z}, normalized({turn.x, turn.y, turn.z, 1})};
   };
   const PoseTravel travel(pose(), pose());
-  return {.solid = shape.solid(), .from = travel.at(0), .to = travel.at(1), .thickness = 0.002};
+  return {.form = shape.form(), .from = travel.at(0), .to = travel.at(1), .thickness = 0.002};
 }
 
 TEST_CASE("what is moved by less than it is clear of a body does not touch it") {

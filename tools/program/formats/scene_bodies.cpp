@@ -1,10 +1,12 @@
 #include "tools/program/formats/scene_bodies.h"
 
 #include <fmt/format.h>
+#include <weft/shape_fields.h>
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -133,21 +135,54 @@ VertexMove read_vertex_move(const Json& json, const std::string& place, std::siz
   return move;
 }
 
+// The fields of shapes, by their types.
+
+void read_field(const Json& json, const std::string& place, double& to) {
+  to = read_number(json, place);
+}
+void read_field(const Json& json, const std::string& place, std::uint32_t& to) {
+  if (!json.is_number_unsigned() || json.get<std::uint64_t>() > UINT32_MAX)
+    refuse(place, "a whole number", json);
+  to = json.get<std::uint32_t>();
+}
+void read_field(const Json& json, const std::string& place, Vec3& to) {
+  to = read_vector(json, place);
+}
+void read_field(const Json& json, const std::string& place, std::vector<double>& to) {
+  to = read_array(json, place, read_number);
+}
+void read_field(const Json& json, const std::string& place, std::vector<Vec3>& to) {
+  to = read_array(json, place, read_vector);
+}
+
+template <class Shape>
+Shape read_fields(Entry& entry) {
+  Shape shape;
+  for_each_part_field<Shape>([&](const auto& field) {
+    if constexpr (requires { read_field(Json(), "", shape.*field.member); }) {
+      if (field.given == Given::always || entry.has(field.name))
+        read_field(entry.needed(field.name), entry.place(field.name), shape.*field.member);
+    }
+  });
+  return shape;
+}
+
 ShapeDescription read_shape(Entry& entry, const std::string& folder) {
   const Json& name = entry.needed("shape");
-  if (name == "plane")
-    return Plane{entry.vector("normal", Plane{}.normal), entry.number("offset", 0)};
-  if (name == "sphere") return Ball{entry.vector("centre", {}), entry.number("radius")};
-  if (name == "capsule") {
-    const Vec3 a = entry.vector("a"), b = entry.vector("b");
-    if (entry.has("radius")) return Capsule{a, b, entry.number("radius"), entry.number("radius")};
-    return Capsule{a, b, entry.number("radius_a"), entry.number("radius_b")};
-  }
   if (name == "box") return box(entry.vector("size"));
-  if (name == "hull")
-    return Hull{read_array(entry.needed("points"), entry.place("points"), read_vector)};
-  if (name == "mesh") return read_mesh(entry, folder);
-  refuse(entry.place("shape"), "plane, sphere, capsule, box, hull or mesh", name);
+  if (name == kShapeKind<TriangleMesh>.name) return read_mesh(entry, folder);
+  if (name == kShapeKind<Capsule>.name && entry.has("radius")) {
+    const double radius = entry.number("radius");
+    return Capsule{entry.vector("a"), entry.vector("b"), radius, radius};
+  }
+  std::optional<ShapeDescription> shape;
+  std::string names;
+  for_each_shape([&]<class Shape> {
+    names += std::string(kShapeKind<Shape>.name) + ", ";
+    if (name == kShapeKind<Shape>.name) shape = read_fields<Shape>(entry);
+  });
+  if (!shape) refuse(entry.place("shape"), names + "or box", name);
+  return *shape;
 }
 
 /// One that is full, of a mass in kg.
@@ -230,25 +265,16 @@ Json rows(const std::vector<Vec3>& vectors) {
   return array;
 }
 
-Json shape_json(const Plane& plane) {
-  return {{"shape", "plane"}, {"normal", row(plane.normal)}, {"offset", plane.offset}};
-}
-Json shape_json(const Ball& ball) {
-  return {{"shape", "sphere"}, {"centre", row(ball.centre)}, {"radius", ball.radius}};
-}
-Json shape_json(const Capsule& c) {
-  return {{"shape", "capsule"},
-          {"a", row(c.a)},
-          {"b", row(c.b)},
-          {"radius_a", c.radius_a},
-          {"radius_b", c.radius_b}};
-}
-Json shape_json(const Hull& hull) { return {{"shape", "hull"}, {"points", rows(hull.points)}}; }
-Json shape_json(const TriangleMesh& mesh) {
-  return {{"shape", "mesh"},
-          {"vertices", rows(mesh.vertices)},
-          {"triangles", mesh.triangles},
-          {"two_sided", mesh.two_sided}};
+Json value_json(Vec3 v) { return row(v); }
+Json value_json(const std::vector<Vec3>& vectors) { return rows(vectors); }
+Json value_json(const auto& value) { return value; }
+
+template <class Shape>
+Json shape_json(const Shape& shape) {
+  Json json{{"shape", kShapeKind<Shape>.name}};
+  for_each_part_field<Shape>(
+      [&](const auto& field) { json[field.name] = value_json(shape.*field.member); });
+  return json;
 }
 
 }  // namespace

@@ -120,9 +120,9 @@ std::size_t inside_solid(const SceneBody& body, const std::vector<Vec3>& particl
   Pose pose = pose_at(body, 0);
   pose.rotation = normalized(pose.rotation);
   const reference::Placement placement = PoseTravel(pose, pose).at(0);
-  const reference::Solid& solid = shape.value()->solid();
+  const reference::Form& form = *shape.value()->form();
   return static_cast<std::size_t>(std::ranges::count_if(particles, [&](Vec3 p) {
-    return gap_of(solid, 0, placement.from_place({p.x, p.y, p.z})).gap < -depth;
+    return form.gap(placement.from_place({p.x, p.y, p.z})).gap < -depth;
   }));
 }
 

@@ -1,9 +1,12 @@
 /// Bodies and moves of a scene file.
 #include <doctest/doctest.h>
+#include <weft/shape_fields.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "engine/bodies/body_mass.h"
+#include "tests/support/shapes.h"
 #include "tests/tools/scene_texts.h"
 #include "tests/tools/temporary_folder.h"
 #include "tools/program/formats/scene_file.h"
@@ -21,21 +24,23 @@ TEST_CASE("bodies survive writing and reading, and move as they are told") {
   scene.positions = {{0, 1, 0}};
   scene.masses = {1};
   scene.friction = 0.45;
-  const std::vector<SceneBody> bodies{{.shape = Plane{{0, 2, 0}, -0.5}, .friction = 0.1},
-                                      {.shape = Capsule{{0, 0, 0}, {0, 1, 0}, 0.2, 0.1},
-                                       .position = {1, 2, 3},
-                                       .thickness = 0.002,
-                                       .move = PinMove{.times = {0, 2},
-                                                       .translations = {{0, 0, 0}, {4, 0, 0}},
-                                                       .rotations = {{0, 0, 0}, {0, 0, 0.5}},
-                                                       .about = {1, 2, 3}}},
-                                      {.shape = box({1, 2, 3})},
-                                      {.shape = Ball{{0, 1, 0}, 0.25}, .rotation = {0, 1, 0.5}}};
+  std::vector<SceneBody> bodies{{.shape = Plane{{0, 2, 0}, -0.5}, .friction = 0.1},
+                                {.shape = Capsule{{0, 0, 0}, {0, 1, 0}, 0.2, 0.1},
+                                 .position = {1, 2, 3},
+                                 .thickness = 0.002,
+                                 .move = PinMove{.times = {0, 2},
+                                                 .translations = {{0, 0, 0}, {4, 0, 0}},
+                                                 .rotations = {{0, 0, 0}, {0, 0, 0.5}},
+                                                 .about = {1, 2, 3}}},
+                                {.shape = box({1, 2, 3})},
+                                {.shape = Ball{{0, 1, 0}, 0.25}, .rotation = {0, 1, 0.5}}};
+  for (const ShapeDescription& shape : test::shapes_of_size(0.25))
+    bodies.push_back({.shape = shape});
   const std::string text = scene_text(scene, {}, {}, bodies);
   const auto read = parse_scene(text);
   REQUIRE_MESSAGE(read, (read ? "" : read.error()));
   CHECK(read.value().description.friction == 0.45);
-  REQUIRE(read.value().bodies.size() == 4);
+  REQUIRE(read.value().bodies.size() == bodies.size());
   CHECK(scene_text(read.value().description, {}, {}, read.value().bodies) == text);
   CHECK(read.value().bodies[3].rotation.z == 0.5);  // to the last bit
   const Pose pose = pose_at(read.value().bodies[1], 1);
@@ -96,9 +101,9 @@ TEST_CASE("masses that no body has are refused with their place") {
   CHECK(error_of(ball + R"("mass": 1, "density": 1)") ==
         "bodies[0]: expected one of the keys 'mass' and 'density'");
   CHECK(error_of(mesh + R"("mass": 1)") ==
-        "bodies[0].shape: has a mass as a ball, a capsule or a hull alone (a triangle mesh)");
+        "bodies[0].shape: has a mass as " + shapes_with_mass() + " alone (a triangle mesh)");
   CHECK(error_of(R"("shape": "plane", "density": 1000)") ==
-        "bodies[0].shape: has a mass as a ball, a capsule or a hull alone (a plane)");
+        "bodies[0].shape: has a mass as " + shapes_with_mass() + " alone (a plane)");
   CHECK(error_of(ball + R"("mass": 1, "moves": {"times": [0], "translations": [[0,0,0]]})") ==
         "bodies[0].moves: a body with a mass moves by itself");
   CHECK(error_of(ball + R"("spin": [0, 1, 0])") ==
@@ -171,8 +176,10 @@ TEST_CASE("errors of bodies name their place") {
     const auto read = bodies_of(bodies);
     return read ? std::string() : read.error();
   };
+  std::string names;
+  for_each_shape([&]<class Shape> { names += std::string(kShapeKind<Shape>.name) + ", "; });
   CHECK(error_of(R"([{"shape": "cone"}])") ==
-        R"(bodies[0].shape: expected plane, sphere, capsule, box, hull or mesh, not "cone")");
+        "bodies[0].shape: expected " + names + "or box, not \"cone\"");
   CHECK(error_of(R"([{"shape": "sphere"}])") == "bodies[0]: the key 'radius' is missing");
   CHECK(error_of(R"([{"shape": "sphere", "radius": 0}])") ==
         "bodies[0].radius: must be finite and greater than 0 (0)");

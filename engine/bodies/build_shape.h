@@ -1,0 +1,4 @@
+/// Shapes of descriptions.
+#pragma once
+
+#include "engine/bodies/body_shape.h"
