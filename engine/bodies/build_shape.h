@@ -1,4 +1,10 @@
-/// Shapes of descriptions.
+/// Shapes of descriptions. Those that are built in sources of their names have legal values.
 #pragma once
 
 #include "engine/bodies/body_shape.h"
+
+namespace weft {
+
+BuiltShape build(const HeightField& field);
+
+}  // namespace weft

@@ -184,6 +184,18 @@ weft_result weft_triangle_mesh(size_t vertex_count, const double* vertices, size
   });
 }
 
+weft_result weft_height_field(uint32_t columns, uint32_t rows, double spacing_x, double spacing_z,
+                              const double* heights, weft_shape** out) {
+  return call([&]() -> weft::Result<void> {
+    Arrays in;
+    weft::HeightField field{
+        columns, rows, spacing_x, spacing_z,
+        list_of(in.needed<double>("heights", heights, std::size_t{columns} * rows))};
+    if (!in.are_good()) return in.error();
+    return build(std::move(field), out);
+  });
+}
+
 void weft_free_shape(weft_shape* shape) { delete shape; }
 
 weft_result weft_add_body(weft_cloth* cloth, const weft_body* body, uint32_t* id) {

@@ -117,7 +117,21 @@ struct TriangleMesh {
   bool two_sided = false;
 };
 
-using ShapeDescription = std::variant<Plane, Ball, Capsule, Hull, TriangleMesh>;
+/// Terrain: the solid under a surface over a rectangle of x and z. It has upright sides under its
+/// border, and no bottom.
+///
+/// The surface goes through heights over the points of a grid. The first point is over the origin
+/// of the body. Two triangles make up a cell of the grid. They share the side from its corner of
+/// the least x and z to that of the largest. Cloth is kept away from the nearest point of the
+/// surface, so slopes count in full. Where cells are finer than the cloth, a ridge or a tip between
+/// its particles is not seen.
+struct HeightField {
+  std::uint32_t columns = 0, rows = 0;  ///< points along x and along z, at least 2
+  double spacing_x = 0, spacing_z = 0;  ///< m, between them, > 0
+  std::vector<double> heights;          ///< m, along y: that of a point is [row * columns + column]
+};
+
+using ShapeDescription = std::variant<Plane, Ball, Capsule, Hull, TriangleMesh, HeightField>;
 
 /// A shape that is checked and prepared. It is immutable: cloths and threads may share it.
 class BodyShape;

@@ -78,6 +78,21 @@ inline constexpr std::tuple kPartFields<TriangleMesh>{
               "keeps cloth on the side where it is"},
 };
 
+template <>
+inline constexpr ShapeKind kShapeKind<HeightField>{
+    "height_field", "HeightField", "a height field",
+    "Terrain: the solid under a surface over a rectangle.", false};
+template <>
+inline constexpr std::tuple kPartFields<HeightField>{
+    PartField{"columns", &HeightField::columns, Values::ruled, nullptr, "points along x",
+              Given::always},
+    PartField{"rows", &HeightField::rows, Values::ruled, nullptr, "points along z", Given::always},
+    PartField{"spacing_x", &HeightField::spacing_x, Values::positive, nullptr, "m", Given::always},
+    PartField{"spacing_z", &HeightField::spacing_z, Values::positive, nullptr, "m", Given::always},
+    PartField{"heights", &HeightField::heights, Values::finite, nullptr,
+              "m, an array (rows * columns), row by row", Given::always},
+};
+
 namespace detail {
 
 template <class... Shape>

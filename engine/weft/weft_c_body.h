@@ -19,6 +19,9 @@ WEFT_API weft_result weft_box(const double edges[3], weft_shape** out);
 WEFT_API weft_result weft_triangle_mesh(size_t vertex_count, const double* vertices,
                                         size_t triangle_count, const uint32_t* triangles,
                                         int two_sided, weft_shape** out);
+/* heights: columns * rows. */
+WEFT_API weft_result weft_height_field(uint32_t columns, uint32_t rows, double spacing_x,
+                                       double spacing_z, const double* heights, weft_shape** out);
 
 typedef struct weft_body { /* Body */
   size_t size;

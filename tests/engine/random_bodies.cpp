@@ -114,6 +114,31 @@ Case random_bodies(std::uint32_t seed) {
   return c;
 }
 
+/// Terrain about as wide as the sheet.
+ShapeDescription random_field(Random& random) {
+  HeightField field{2 + random.below(12),
+                    2 + random.below(12),
+                    random.between(0.02, 0.2),
+                    random.between(0.02, 0.2),
+                    {}};
+  const double most = random.between(0, 0.3);
+  for (std::uint32_t i = 0; i < field.columns * field.rows; ++i)
+    field.heights.push_back(random.between(-most, most));
+  return field;
+}
+
+/// The same, with terrain in place of about half of the bodies.
+Case random_fields(std::uint32_t seed) {
+  Case c = random_bodies(seed);
+  Random random(seed + 2);
+  for (Solid& solid : c.solids) {
+    if (random.below(2) == 0) continue;
+    solid.shape = random_field(random);
+    solid.body.shape = shape_of(solid.shape);
+  }
+  return c;
+}
+
 std::string text(const Case& c) {
   std::ostringstream out;
   out << "WEFT_SEED=" << c.seed << " WEFT_CASES=1: " << c.cloth.scene.positions.size()
@@ -273,6 +298,10 @@ void check_case(const Case& c) {
 
 TEST_CASE("random bodies: the state is finite, and what converged is in none of them") {
   for_each_case(300, random_bodies, check_case);
+}
+
+TEST_CASE("random bodies: the same beside terrain") {
+  for_each_case(300, random_fields, check_case);
 }
 
 /// The first eight: what puts the cloth right out of one body moves it into another, which no

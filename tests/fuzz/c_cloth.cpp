@@ -129,7 +129,7 @@ class Session {
   }
   void read_floats() {
     const weft_cloth* cloth = some_cloth();
-    const std::size_t stride = drawing_.rarely(8) ? drawing_.below(8) : 3 + drawing_.below(3);
+    const std::size_t stride = drawing_.rarely(8) ? drawing_.below(7) : 3 + drawing_.below(3);
     std::vector<float> floats(some_count(stride * weft_particle_count(cloth)));
     const auto origin = vector();
     done(weft_read_float_positions(cloth, {floats.data(), floats.size(), stride},
@@ -212,7 +212,7 @@ class Session {
     const auto a = vector(), b = vector();
     const double r = drawing_.near(0.2);
     const std::size_t points = drawing_.below(9), triangles = drawing_.below(6);
-    const std::uint32_t kind = drawing_.below(6);
+    const std::uint32_t kind = drawing_.below(8);
     const auto places = drawing_.numbers(3 * points, 0.3);
     const auto corners = drawing_.indices(3 * triangles, points);
     const int two_sided = drawing_.integer();
@@ -228,6 +228,9 @@ class Session {
           return weft_hull(points, places.data(), out);
         case 4:
           return weft_box(a.data(), out);
+        case 5:
+          return weft_height_field(3, static_cast<std::uint32_t>(points), r, 0.2, places.data(),
+                                   out);
         default:
           return weft_triangle_mesh(points, places.data(), triangles, corners.data(), two_sided,
                                     out);

@@ -15,6 +15,7 @@ std::vector<ShapeDescription> shapes_of_size(double size) {
       Capsule{{-size, 0, 0}, {size, 0, 0}, 0.4 * size, 0.3 * size},
       box({size, size, size}),
       plate,
+      HeightField{2, 3, size, 0.5 * size, {0, 0.1 * size, -0.2 * size, 0.2 * size, 0, 0.3 * size}},
   };
   return shapes;
 }

@@ -114,6 +114,25 @@ TriangleMesh ring_mesh(double radius, double tube_radius, int along, int around)
   return mesh;
 }
 
+TriangleMesh terrain_mesh(const HeightField& field) {
+  TriangleMesh mesh;
+  for (std::uint32_t row = 0; row < field.rows; ++row) {
+    for (std::uint32_t column = 0; column < field.columns; ++column) {
+      mesh.vertices.push_back({column * field.spacing_x,
+                               field.heights[std::size_t{row} * field.columns + column],
+                               row * field.spacing_z});
+    }
+  }
+  for (std::uint32_t row = 0; row + 1 < field.rows; ++row) {
+    for (std::uint32_t column = 0; column + 1 < field.columns; ++column) {
+      const std::uint32_t a = row * field.columns + column, b = a + 1, c = a + field.columns,
+                          d = c + 1;
+      mesh.triangles.insert(mesh.triangles.end(), {{a, d, b}, {a, c, d}});
+    }
+  }
+  return mesh;
+}
+
 TriangleMesh plate_mesh(double length, double width, int along, int across) {
   TriangleMesh mesh;
   for (int i = 0; i <= along; ++i) {

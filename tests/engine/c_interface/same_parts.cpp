@@ -192,6 +192,9 @@ TEST_CASE("shapes of every kind") {
   add(mesh, [&](weft_shape** out) {
     return weft_triangle_mesh(4, numbers(corners), 4, faces.data(), 1, out);
   });
+  const std::vector<double> heights{-0.1, -0.3, 0, -0.1, -0.2, -0.1};
+  add(HeightField{3, 2, 0.4, 0.6, heights},
+      [&](weft_shape** out) { return weft_height_field(3, 2, 0.4, 0.6, heights.data(), out); });
   for (const auto& [shape, c_shape] : shapes) {
     Both b = CottonSheet().cloths();
     auto body = initial(weft_init_body);

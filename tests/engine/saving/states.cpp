@@ -476,8 +476,8 @@ TEST_CASE("the format is the one of its version") {
   }
   CHECK(state[8] == std::byte{13});
   CHECK(model[8] == std::byte{50});
-  CHECK(state.size() == 13133);
-  CHECK(checksum(state) == 0x472c740726e60691);
+  CHECK(state.size() == 13796);
+  CHECK(checksum(state) == 0xe59dab8908a1e657);
   CHECK(model.size() == 820);
   CHECK(checksum(model) == 0xb9d416b68377c552);
 }

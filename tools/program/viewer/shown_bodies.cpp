@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <variant>
 
+#include "tools/scenes/body_meshes.h"
 #include "tools/scenes/body_moves.h"
 
 namespace weft::tools {
@@ -49,6 +51,13 @@ Json described(const TriangleMesh& mesh) {
   return {{"shape", "mesh"}, {"two_sided", mesh.two_sided}};
 }
 
+/// A shape that the page draws as triangles.
+std::optional<TriangleMesh> mesh_of(const TriangleMesh& mesh) { return mesh; }
+std::optional<TriangleMesh> mesh_of(const HeightField& field) {
+  return scenes::terrain_mesh(field);
+}
+std::optional<TriangleMesh> mesh_of(const auto&) { return std::nullopt; }
+
 }  // namespace
 
 ShownBodies::ShownBodies(const SceneDescription& scene, std::span<const SceneBody> bodies,
@@ -75,13 +84,22 @@ Json ShownBodies::shape_of(std::size_t body, const std::string& name, Sections& 
     const std::uint32_t particle = scene_.spheres[body - bodies_.size()];
     return described(Ball{.radius = scene_.radii[particle]});
   }
-  if (const auto* mesh = std::get_if<TriangleMesh>(&bodies_[body].shape)) {
+  const ShapeDescription& shape = bodies_[body].shape;
+  if (auto mesh = std::visit([](const auto& one) { return mesh_of(one); }, shape)) {
+    const bool deforms = bodies_[body].vertex_move.has_value();
+    if (deforms) mesh->vertices = vertices_at(bodies_[body], 0);
     sections.add_triangles(name + " triangles", mesh->triangles);
-    sections.add_floats(name + " vertices", floats_of(vertices_at(bodies_[body], 0)));
-    if (bodies_[body].vertex_move)
-      sections.add(name + " motion", moving_[body].points.front().bytes());
+    sections.add_floats(name + " vertices", floats_of(mesh->vertices));
+    if (deforms) sections.add(name + " motion", moving_[body].points.front().bytes());
+    return described(*mesh);
   }
-  return std::visit([](const auto& shape) { return described(shape); }, bodies_[body].shape);
+  return std::visit(
+      [](const auto& one) {
+        Json json;
+        if constexpr (requires { described(one); }) json = described(one);
+        return json;
+      },
+      shape);
 }
 
 Json ShownBodies::write(Sections& sections) const {
