@@ -6,5 +6,6 @@
 namespace weft {
 
 BuiltShape build(const HeightField& field);
+BuiltShape build(const Torus& torus);
 
 }  // namespace weft

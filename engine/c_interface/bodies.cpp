@@ -196,6 +196,14 @@ weft_result weft_height_field(uint32_t columns, uint32_t rows, double spacing_x,
   });
 }
 
+weft_result weft_torus(const double centre[3], const double axis[3], double major, double minor,
+                       weft_shape** out) {
+  return call([&]() -> weft::Result<void> {
+    if (auto r = given({{"centre", centre}, {"axis", axis}}); !r) return r;
+    return build(weft::Torus{vector_of(centre), vector_of(axis), major, minor}, out);
+  });
+}
+
 void weft_free_shape(weft_shape* shape) { delete shape; }
 
 weft_result weft_add_body(weft_cloth* cloth, const weft_body* body, uint32_t* id) {

@@ -32,13 +32,13 @@
 /// predicts where particles go; tests/README.md says which bodies are too fast for that. An edge or
 /// a corner of a body that passes between the particles of a coarse cloth is not detected.
 ///
-/// A ball, capsule or hull that fits between the particles of the cloth touches the whole surface
-/// of the cloth, as a triangle mesh does, and costs as much. It fits where its greatest width
-/// is less than 2/sqrt(3) of the longest side of a triangle of the cloth, or its width is less
-/// than half of the largest height of a triangle, as those of rods and blades are. These lengths
-/// are at rest; for a thread both are its length. Its thickness counts, on both sides. The width of
-/// a capsule is that of its wider end. Such a hull has round edges, and such a capsule pushes
-/// across its axis.
+/// A ball, capsule, hull or torus that fits between the particles of the cloth touches the whole
+/// surface of the cloth, as a triangle mesh does, and costs as much. It fits where its greatest
+/// width is less than 2/sqrt(3) of the longest side of a triangle of the cloth, or its width is
+/// less than half of the largest height of a triangle, as those of rods and blades are. These
+/// lengths are at rest; for a thread both are its length. Its thickness counts, on both sides. The
+/// width of a capsule is that of its wider end, and the width of a torus is twice its minor radius.
+/// Such a hull has round edges, and such a capsule pushes across its axis.
 ///
 /// Triangle meshes touch the whole surface of the cloth (SceneDescription::surface): particles
 /// against triangles both ways, and edges against edges. Every 2 ms each pair that may have met is
@@ -131,7 +131,15 @@ struct HeightField {
   std::vector<double> heights;          ///< m, along y: that of a point is [row * columns + column]
 };
 
-using ShapeDescription = std::variant<Plane, Ball, Capsule, Hull, TriangleMesh, HeightField>;
+/// A ring: all balls of the minor radius whose centres lie on a circle of the major one.
+struct Torus {
+  Vec3 centre{};
+  Vec3 axis{0, 1, 0};  ///< of any length but 0
+  double major = 0;    ///< > 0
+  double minor = 0;    ///< from major / 10000 to less than major
+};
+
+using ShapeDescription = std::variant<Plane, Ball, Capsule, Hull, TriangleMesh, HeightField, Torus>;
 
 /// A shape that is checked and prepared. It is immutable: cloths and threads may share it.
 class BodyShape;
@@ -146,7 +154,7 @@ struct BodyMass {
   /// yy, zz, yz, zx and xy. The element xy is minus the sum of m x y.
   std::array<double, 6> inertia{};
 };
-/// The mass of a ball, a capsule or a hull that is full, at a density (kg/m^3, > 0).
+/// The mass of a ball, a capsule, a hull or a torus that is full, at a density (kg/m^3, > 0).
 WEFT_API Result<BodyMass> mass_of(const BodyShape& shape, double density);
 
 /// The velocity of a body that moves by itself.
@@ -166,8 +174,8 @@ struct Body {
   /// Coulomb's coefficient, at least 0. The coefficient of a contact is the geometric mean of this
   /// one and the cloth's (SceneDescription::friction).
   double friction = 0.3;
-  /// With a mass it moves by itself, and move_body is refused. It must be a ball, a capsule or a
-  /// hull, and too large to fit between the particles of the cloth.
+  /// With a mass it moves by itself, and move_body is refused. It must be a ball, a capsule, a hull
+  /// or a torus, and too large to fit between the particles of the cloth.
   std::optional<BodyMass> mass{};
 };
 

@@ -93,6 +93,16 @@ inline constexpr std::tuple kPartFields<HeightField>{
               "m, an array (rows * columns), row by row", Given::always},
 };
 
+template <>
+inline constexpr ShapeKind kShapeKind<Torus>{"torus", "Torus", "a torus", "A ring.", true};
+template <>
+inline constexpr std::tuple kPartFields<Torus>{
+    PartField{"centre", &Torus::centre, Values::finite, nullptr, "m"},
+    PartField{"axis", &Torus::axis, Values::finite, nullptr, "of any length but 0"},
+    PartField{"major", &Torus::major, Values::positive, nullptr, "m, of its circle", Given::always},
+    PartField{"minor", &Torus::minor, Values::positive, nullptr, "m, around it", Given::always},
+};
+
 namespace detail {
 
 template <class... Shape>

@@ -22,6 +22,8 @@ WEFT_API weft_result weft_triangle_mesh(size_t vertex_count, const double* verti
 /* heights: columns * rows. */
 WEFT_API weft_result weft_height_field(uint32_t columns, uint32_t rows, double spacing_x,
                                        double spacing_z, const double* heights, weft_shape** out);
+WEFT_API weft_result weft_torus(const double centre[3], const double axis[3], double major,
+                                double minor, weft_shape** out);
 
 typedef struct weft_body { /* Body */
   size_t size;

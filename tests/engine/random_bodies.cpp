@@ -114,8 +114,13 @@ Case random_bodies(std::uint32_t seed) {
   return c;
 }
 
-/// Terrain about as wide as the sheet.
+/// Terrain about as wide as the sheet, or a ring.
 ShapeDescription random_field(Random& random) {
+  if (random.below(2) == 0) {
+    const double major = random.between(0.05, 0.3);
+    return Torus{
+        .axis = random.in_box(1), .major = major, .minor = major * random.between(0.1, 0.9)};
+  }
   HeightField field{2 + random.below(12),
                     2 + random.below(12),
                     random.between(0.02, 0.2),
@@ -127,7 +132,7 @@ ShapeDescription random_field(Random& random) {
   return field;
 }
 
-/// The same, with terrain in place of about half of the bodies.
+/// The same, with one of these in place of about half of the bodies.
 Case random_fields(std::uint32_t seed) {
   Case c = random_bodies(seed);
   Random random(seed + 2);
@@ -300,7 +305,7 @@ TEST_CASE("random bodies: the state is finite, and what converged is in none of 
   for_each_case(300, random_bodies, check_case);
 }
 
-TEST_CASE("random bodies: the same beside terrain") {
+TEST_CASE("random bodies: the same beside terrain and rings") {
   for_each_case(300, random_fields, check_case);
 }
 

@@ -129,7 +129,7 @@ class Session {
   }
   void read_floats() {
     const weft_cloth* cloth = some_cloth();
-    const std::size_t stride = drawing_.rarely(8) ? drawing_.below(7) : 3 + drawing_.below(3);
+    const std::size_t stride = drawing_.rarely(8) ? drawing_.below(8) : 3 + drawing_.below(3);
     std::vector<float> floats(some_count(stride * weft_particle_count(cloth)));
     const auto origin = vector();
     done(weft_read_float_positions(cloth, {floats.data(), floats.size(), stride},
@@ -229,6 +229,8 @@ class Session {
         case 4:
           return weft_box(a.data(), out);
         case 5:
+          return weft_torus(a.data(), b.data(), r, drawing_.near(0.1), out);
+        case 6:
           return weft_height_field(3, static_cast<std::uint32_t>(points), r, 0.2, places.data(),
                                    out);
         default:

@@ -16,6 +16,7 @@ std::vector<ShapeDescription> shapes_of_size(double size) {
       box({size, size, size}),
       plate,
       HeightField{2, 3, size, 0.5 * size, {0, 0.1 * size, -0.2 * size, 0.2 * size, 0, 0.3 * size}},
+      Torus{.axis = {0, 1, 0.2}, .major = size, .minor = 0.3 * size},
   };
   return shapes;
 }

@@ -114,6 +114,15 @@ TriangleMesh ring_mesh(double radius, double tube_radius, int along, int around)
   return mesh;
 }
 
+TriangleMesh torus_mesh(const Torus& torus, int along, int around) {
+  TriangleMesh mesh = ring_mesh(torus.major, torus.minor, along, around);
+  const Vec3 w = unit(torus.axis);
+  const Vec3 u = unit(cross(w, std::abs(w.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
+  const Vec3 v = cross(u, w);
+  for (Vec3& p : mesh.vertices) p = sum(sum(sum(torus.centre, p.x, u), p.y, w), p.z, v);
+  return mesh;
+}
+
 TriangleMesh terrain_mesh(const HeightField& field) {
   TriangleMesh mesh;
   for (std::uint32_t row = 0; row < field.rows; ++row) {

@@ -10,6 +10,8 @@ TriangleMesh capsule_mesh(const Capsule& capsule, int around);
 TriangleMesh ball_mesh(const weft::Ball& ball, int around);
 /// Around the y axis, with so many quads along the ring and around its tube, each cut in two.
 TriangleMesh ring_mesh(double radius, double tube_radius, int along, int around);
+/// The same of a torus.
+TriangleMesh torus_mesh(const Torus& torus, int along, int around);
 /// The surface of terrain, which is open and looks up.
 TriangleMesh terrain_mesh(const HeightField& field);
 /// Around the origin, with so many squares along each edge, each cut in two.

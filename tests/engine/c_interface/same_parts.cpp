@@ -195,6 +195,8 @@ TEST_CASE("shapes of every kind") {
   const std::vector<double> heights{-0.1, -0.3, 0, -0.1, -0.2, -0.1};
   add(HeightField{3, 2, 0.4, 0.6, heights},
       [&](weft_shape** out) { return weft_height_field(3, 2, 0.4, 0.6, heights.data(), out); });
+  add(Torus{{0, -0.1, 0.1}, {0, 1, 0}, 0.3, 0.1},
+      [&](weft_shape** out) { return weft_torus(low, up, 0.3, 0.1, out); });
   for (const auto& [shape, c_shape] : shapes) {
     Both b = CottonSheet().cloths();
     auto body = initial(weft_init_body);

@@ -32,6 +32,7 @@ KINDS = [
     (weft.Hull(points=np.concatenate([BOX.points, [(0, -2, 0)]])), weft.Pose(), 0.15),
     (weft.HeightField(columns=2, rows=3, spacing_x=2, spacing_z=1, heights=[0.1] * 6),
      weft.Pose(position=(-1, 0, -1)), 0.1),
+    (weft.Torus(centre=(0.3, 0, 0), axis=(0, 2, 0), major=0.3, minor=0.1), weft.Pose(), 0.1),
     (plate(0.1), weft.Pose(), 0.1),
     (plate(0.1), RAISED, 1.1),
 ]

@@ -476,8 +476,8 @@ TEST_CASE("the format is the one of its version") {
   }
   CHECK(state[8] == std::byte{13});
   CHECK(model[8] == std::byte{50});
-  CHECK(state.size() == 13796);
-  CHECK(checksum(state) == 0xe59dab8908a1e657);
+  CHECK(state.size() == 14443);
+  CHECK(checksum(state) == 0xc55f1186071caf97);
   CHECK(model.size() == 820);
   CHECK(checksum(model) == 0xb9d416b68377c552);
 }

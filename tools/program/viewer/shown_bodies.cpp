@@ -56,6 +56,9 @@ std::optional<TriangleMesh> mesh_of(const TriangleMesh& mesh) { return mesh; }
 std::optional<TriangleMesh> mesh_of(const HeightField& field) {
   return scenes::terrain_mesh(field);
 }
+std::optional<TriangleMesh> mesh_of(const Torus& torus) {
+  return scenes::torus_mesh(torus, 96, 32);
+}
 std::optional<TriangleMesh> mesh_of(const auto&) { return std::nullopt; }
 
 }  // namespace
