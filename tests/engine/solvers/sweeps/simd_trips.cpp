@@ -47,7 +47,7 @@ bool same(const kernels::Vectors& a, const kernels::Vectors& b) {
 }
 
 #ifdef WEFT_SANITIZE_THREAD
-constexpr std::size_t kMostParticles = 6000;  // of a sheet that is passed over hundreds of times
+constexpr std::size_t kMostParticles = 4000;  // of a sheet that is passed over hundreds of times
 #else
 constexpr std::size_t kMostParticles = 100000;
 #endif
