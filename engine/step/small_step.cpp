@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "engine/measure/state_measure.h"
 #include "engine/solvers/small_steps/fold_length.h"
@@ -30,11 +29,6 @@ namespace {
 bool leaves_bending(const State& s) {
   return s.small_steps->bending_error() > s.settings.tolerance;
 }
-
-/// J, that springs and triangles of fabric have released in a frame, and bending elements.
-struct Released {
-  double strain = 0, bending = 0;
-};
 
 /// The frame that is being done, by its plan.
 class Frame {
@@ -65,7 +59,9 @@ class Frame {
     const double give_before = plan_.placed ? 0 : s_.give_per_mass;
     give_before_ = std::max(give_, give_before);
     strain_energy_before_ = strain_energy(s_.position, give_before_);
-    bending_energy_before_ = solver_.bending_energy(give_before_, team_);
+    bending_energy_before_ = solver_.bending_energy(0, team_);
+    knows_bends_ = goes_on() && turns_folds();
+    if (!knows_bends_) held_bending_before_ = solver_.bending_energy(give_before_, team_);
   }
   void substep() {
     forces_.begin_substep(team_);
@@ -171,21 +167,21 @@ class Frame {
            report_.max_rail_gap <= s_.settings.contact_tolerance;
   }
 
-  /// Since the beginning: there those that have become stiffer because substeps are shorter had no
-  /// more than before.
-  Released released() {
-    return {strain_energy_before_ - strain_energy(s_.solved, give_),
-            bending_energy_before_ - solver_.bending_energy(give_, team_)};
-  }
-  /// J, that bending has given to the motion, with hinges that have yielded as they are now. It
-  /// takes as long as the bending of two substeps. Nothing where it is not known.
-  std::optional<double> released_to_motion() {
-    if (s_.model->bending.size() == 0 || !goes_on() || !turns_folds()) return {};
+  /// J, by springs and triangles of fabric, since the beginning: there those that have become
+  /// stiffer because substeps are shorter had no more than before.
+  double released_by_strain() { return strain_energy_before_ - strain_energy(s_.solved, give_); }
+  /// J, by which the energy of bending has fallen. It includes the energy that yielding has lost.
+  double released_by_bending() { return bending_energy_before_ - solver_.bending_energy(0, team_); }
+  /// J of it, that can have become motion, with hinges that have yielded as they are now. It takes
+  /// as long as the bending of two substeps.
+  double moved_by_bending() {
+    if (s_.model->bending.size() == 0) return 0;
+    if (!knows_bends_) {
+      return held_bending_before_ - solver_.bending_energy(give_, team_) - std::max(0.0, yielded_);
+    }
     return solver_.releasable_bending_energy(s_.position.view(), give_before_, team_) -
            solver_.releasable_bending_energy(s_.solved.view(), give_, team_);
   }
-  /// J, that bending elements have lost since the beginning because they yielded.
-  double yielded() const { return yielded_; }
   /// See FrameForces::end().
   double end_forces() { return forces_.end(); }
   FrameCourse course() const {
@@ -279,7 +275,9 @@ class Frame {
   double law_error_ = 0;               // a strain, of the last sweep, before it was mended
   double give_ = 0, give_before_ = 0;  // s^2, give_per_mass(); of the beginning
   double strain_energy_before_ = 0, bending_energy_before_ = 0;  // J, in the beginning
-  double yielded_ = 0;                                           // J
+  bool knows_bends_ = true;         // else each hinge is held to what a substep resolves of it
+  double held_bending_before_ = 0;  // J, of hinges that are held to it, in the beginning
+  double yielded_ = 0;              // J, that they have lost because they yielded
 };
 
 /// As timed. To find contacts with bodies is a stage of its own.
@@ -318,17 +316,14 @@ Remains end_frame(State& s, Frame& frame, const FramePlan& plan, double dt_frame
                   const Budget& budget, kernels::ImpulseEnergy& change, Trial& trial) {
   Remains remains{give_per_mass(s, plan), takes_over_in(s) ? 0 : s.lost_energy};
   trial.seam_work = s.small_steps->seams().work();
-  const Released released = frame.released();
-  const double done =
-      released.strain + trial.seam_work + s.body_report.work + s.body_report.untangling;
-  if (s.settings.iterations == 0) {
-    const double by_elements = released.bending - std::max(0.0, frame.yielded());
-    const double by_bends = frame.released_to_motion().value_or(by_elements);
-    remains.lost_energy = guard_springs(s, remains.lost_energy, done + by_bends, dt_frame, change);
-  }
+  const double released =
+      frame.released_by_strain() + trial.seam_work + s.body_report.work + s.body_report.untangling;
+  if (s.settings.iterations == 0)
+    remains.lost_energy = guard_springs(s, remains.lost_energy, released + frame.moved_by_bending(),
+                                        dt_frame, change);
   s.body_report.work += s.small_steps->free_bodies().slowed();
   if (pins_move(s)) trial.pin_work = work_of(motion_of_pins(s, dt_frame), s, dt_frame);
-  trial.energy_lost = trial.pin_work + done + released.bending - 0.5 * change.gain;
+  trial.energy_lost = trial.pin_work + released + frame.released_by_bending() - 0.5 * change.gain;
   if (!takes_over_in(s)) trial.motion_error = s.small_steps->motion_error();
   if (refines_substeps(s)) {
     trial.lengthening = s.lengthening;

@@ -201,13 +201,19 @@ double SimdBending::solve_stiffly(const float* u, const float* start, const Bend
 }
 
 double SimdBending::energy(const float* u, double give, Team& team) {
-  return layout_.empty() ? 0 : energy_where_resolved(u, frame_.resolved(give), team);
+  if (layout_.empty()) return 0;
+  simd::Bending bending = arrays(u);
+  bending.resolved = to_finite_float(frame_.resolved(give));
+  for_blocks(team, [&](bool four, std::size_t first, std::size_t last) {
+    table_.bending_energy(bending, energies_.data(), four, first, last);
+  });
+  return std::accumulate(energies_.begin(), energies_.end(), 0.0);
 }
 
 /// The minimum over displacements d of the energy at u + d and d M d / (2 f), by a solution for d.
 double SimdBending::releasable_energy(float* u, double give, Team& team) {
   if (layout_.empty()) return 0;
-  const double whole = energy_where_resolved(u, std::numeric_limits<double>::max(), team);
+  const double whole = energy(u, 0, team);
   const BendingStep step{1 / frame_.resolved(give), 1, 0};
   pull(u, u, step, team);
   float* const force = u;  // u has been read
@@ -231,15 +237,6 @@ double SimdBending::released(BendingSystem<Real>& system, const float* force, co
     works_[first / kFloatsOfPart] = 0.5 * sum;
   });
   return std::accumulate(works_.begin(), works_.end(), 0.0);
-}
-
-double SimdBending::energy_where_resolved(const float* u, double resolved, Team& team) {
-  simd::Bending bending = arrays(u);
-  bending.resolved = to_finite_float(resolved);
-  for_blocks(team, [&](bool four, std::size_t first, std::size_t last) {
-    table_.bending_energy(bending, energies_.data(), four, first, last);
-  });
-  return std::accumulate(energies_.begin(), energies_.end(), 0.0);
 }
 
 std::size_t SimdBending::bytes() const {

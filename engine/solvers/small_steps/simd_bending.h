@@ -27,7 +27,7 @@ class SimdBending {
   double resolved(double give) const { return frame_.resolved(give); }
   /// After the prediction of a substep whose positions move by give w f. start: where it began.
   void bend(float* u, const float* start, double give, Team& team);
-  /// J, with positions at base + u, of substeps of `give`.
+  /// J, with positions at base + u, of substeps of `give`; 0: all of it.
   double energy(const float* u, double give, Team& team);
   /// J, of it what substeps of `give` can release (small_steps.h). After the last substep, and
   /// overwrites u.
@@ -46,7 +46,6 @@ class SimdBending {
   }
   simd::Bending arrays(const float* u);
   void pull(const float* u, const float* start, const BendingStep& step, Team& team);
-  double energy_where_resolved(const float* u, double resolved, Team& team);
   template <class Real>
   double released(BendingSystem<Real>& system, const float* force, const BendingLaw& law,
                   Team& team);

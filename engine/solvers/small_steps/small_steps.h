@@ -102,7 +102,8 @@ class SmallSteps {
   virtual void read_starts(kernels::VectorsView x, Team& team) const = 0;
   /// m; since the present substep began no particle has moved farther.
   virtual double largest_move(Team& team) = 0;
-  /// J, of the bending elements, where the particles are (BendingFrame::resolved()).
+  /// J, of the bending elements, where the particles are (BendingFrame::resolved()); give 0: all of
+  /// it.
   virtual double bending_energy(double give, Team& team) = 0;
   /// J, of the energy of bending at x that substeps of `give` can turn into motion. A swing of the
   /// angular frequency w gives 1 / (1 + f w^2) of its own, f = 1 / BendingFrame::resolved(give):
