@@ -10,13 +10,13 @@
 namespace weft::tools {
 namespace {
 
-using Numbers = std::vector<std::int32_t>;
+using LinkNumbers = std::vector<std::int32_t>;
 constexpr std::int32_t kNoNumber = -1;
 
 std::int32_t number(std::size_t value) { return static_cast<std::int32_t>(value); }
 
-Numbers link_colours(const SceneDescription& scene, const ConstraintStore& store) {
-  Numbers colours(scene.constraints.size(), kNoNumber);
+LinkNumbers link_colours(const SceneDescription& scene, const ConstraintStore& store) {
+  LinkNumbers colours(scene.constraints.size(), kNoNumber);
   for (std::size_t i = 0; i < store.size(); ++i) {
     if (store.colour[i] != kNoIndex) colours[store.described[i]] = number(store.colour[i]);
   }
@@ -24,7 +24,7 @@ Numbers link_colours(const SceneDescription& scene, const ConstraintStore& store
 }
 
 struct YarnNumbers {
-  Numbers yarns, families;
+  LinkNumbers yarns, families;
 };
 
 YarnNumbers link_yarns(const SceneDescription& scene,
@@ -37,8 +37,8 @@ YarnNumbers link_yarns(const SceneDescription& scene,
     links.push_back({scene.constraints[i].a, scene.constraints[i].b});
     constraint.push_back(i);
   }
-  YarnNumbers numbers{Numbers(scene.constraints.size(), kNoNumber),
-                      Numbers(scene.constraints.size(), kNoNumber)};
+  YarnNumbers numbers{LinkNumbers(scene.constraints.size(), kNoNumber),
+                      LinkNumbers(scene.constraints.size(), kNoNumber)};
   const WovenYarns woven = find_yarns(scene.positions, links);
   for (std::size_t y = 0; y < woven.yarns.size(); ++y) {
     for (const std::uint32_t link : woven.links_of(woven.yarns[y])) {
@@ -49,8 +49,8 @@ YarnNumbers link_yarns(const SceneDescription& scene,
   return numbers;
 }
 
-Numbers fabric_colours(const SceneDescription& scene, const Model& model) {
-  Numbers colours(scene.membrane.size(), kNoNumber);
+LinkNumbers fabric_colours(const SceneDescription& scene, const Model& model) {
+  LinkNumbers colours(scene.membrane.size(), kNoNumber);
   if (model.membrane.size() == 0) return colours;
   const MembraneLayout& layout = model.small_steps().membrane;
   for (std::size_t batch = 0; batch < layout.batches.size(); ++batch) {
@@ -67,7 +67,7 @@ Numbers fabric_colours(const SceneDescription& scene, const Model& model) {
 
 void add_structure(Sections& sections, const SceneDescription& scene, const Model& model,
                    std::span<const std::array<std::uint32_t, 4>> cells) {
-  Numbers ends;
+  LinkNumbers ends;
   for (const Constraint& c : scene.constraints) {
     ends.push_back(number(c.a));
     ends.push_back(number(c.b));
