@@ -343,7 +343,7 @@ inline constexpr double kLightSphere = 10;
 /// Slots of a particle that make another thread worth its meetings: two threads gain nothing at
 /// 1,600 particles, and 1.7 times at 10,000.
 inline constexpr std::size_t kLeastSlotsPerThread = 1000;
-/// A substep that is rejected is tried in up to 2^kMostDoublings parts.
+/// A substep is tried in up to 2^kMostDoublings parts, a frame of fabric in so many times its own.
 inline constexpr int kMostDoublings = 4;
 /// The part of a doubling by which each step without a rejected attempt comes back to fewer, longer
 /// substeps.

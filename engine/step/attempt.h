@@ -22,6 +22,8 @@ struct Attempt {
   Method method = Method::by_solver;
   Scheme scheme = Scheme::paper;
   int parts = 1;         // it does one of so many of a substep, or what is left
+  int doublings = 0;     // of the number of small steps
+  bool saves = true;     // half of the iterations are for those after it, if there are any
   bool is_last = false;  // nothing is tried after it: its result is accepted with its error
   bool in_vain = false;  // no state keeps the constraints: it may take little time
 
@@ -34,7 +36,8 @@ struct Attempt {
 ///
 /// A part is rejected if its solver gives up or uses up its iterations, if its velocities do not
 /// converge (rattle), or if it gains energy (energy.h). Yarns aim at tuning::kYarnGoal: a part
-/// that misses that is rejected too, unless it is the shortest.
+/// that misses that is rejected too, unless it is the shortest. Small steps of fabric are
+/// rejected where they leave more than four tolerances, and then until they converge.
 enum class Outcome : std::uint8_t { accepted, rejected, not_finite };
 
 /// The outcome of an attempt.

@@ -94,6 +94,11 @@ double passes_beyond(int substeps, double automatic_substeps) {
   return std::max(tuning::kPassesBeyond * substeps, missing);
 }
 
+/// Whether an attempt with twice as many can follow one that is rejected.
+bool can_be_finer(int substeps, const Budget& budget) {
+  return 2 * substeps <= most_substeps({.positions = budget.positions - substeps});
+}
+
 /// Particles that are spheres touch closed forms alone.
 Gaps gaps_of(State& s) {
   if (!s.bodies.ask_for_gaps() || s.model->has_spheres()) return {};
@@ -115,11 +120,12 @@ double refinement_for_motion(const State& s, const FramePlan& plan, double error
   constexpr double kLevel = 0.5;
   const double asked = s.settings.motion_tolerance;
   const bool can_fall =
-      plan.postponed == 0 && plan.substeps < most_substeps(budget) &&
+      plan.refinement >= s.refinement && plan.substeps < most_substeps(budget) &&
       error > tuning::kOverRounding * s.small_steps->rounding_error(plan.dt_substep);
-  if (error > asked && can_fall) return s.refinement + kLevel;
+  if (error > asked && can_fall) return plan.refinement + kLevel;
   const bool is_small = error < tuning::kMotionSpare * asked;
-  return is_small ? std::max(0.0, s.refinement - kLevel) : s.refinement;
+  const double reached = std::max(s.refinement, plan.refinement);
+  return is_small ? std::max(0.0, reached - kLevel) : reached;
 }
 
 /// The same for fabric without a motion tolerance. Its load may come from any side, and what
@@ -131,13 +137,13 @@ double refinement_for_laws(const State& s, const FramePlan& plan, const FrameCou
   const double share = course.beyond / plan.substeps;
   if (share > tuning::kMuchMended && plan.substeps < most_substeps(budget)) {
     lengthening.revoke();
-    return std::max(s.refinement, s.refinement - plan.postponed + std::log2(1 + share));
+    return std::max(s.refinement, plan.refinement + std::log2(1 + share));
   }
   const double least = -std::log2(kWeightsOfSwing) / 2;
-  if (plan.postponed > 0 || share >= tuning::kLittleMended || s.refinement <= least)
-    return s.refinement;
-  if (!lengthening.begin(kLevel, course.left)) return s.refinement;
-  return std::max(least, s.refinement - kLevel);
+  if (plan.refinement < s.refinement || share >= tuning::kLittleMended || plan.refinement <= least)
+    return std::max(s.refinement, plan.refinement);
+  if (!lengthening.begin(kLevel, course.left)) return plan.refinement;
+  return std::max(least, plan.refinement - kLevel);
 }
 
 }  // namespace
@@ -163,6 +169,7 @@ FramePlan plan_of_step(State& s, const Attempt& attempt, double dt, const Budget
                  .creases = s.creases.all()};
   add_bodies(s, plan);
   keep_length(s, dt);
+  plan.refinement = s.refinement;
   const double usual = usual_length(s, dt);
   const double wanted = std::max(1.0, std::ceil(dt / usual));
   if (s.settings.substeps != kAutomaticSubsteps && !takes_over) {
@@ -171,8 +178,9 @@ FramePlan plan_of_step(State& s, const Attempt& attempt, double dt, const Budget
     plan.passes = std::min<double>(budget.positions, passes_beyond(plan.substeps, wanted));
     keep_stiffness(s, dt, plan);
   } else {
-    const double length = plan.placed ? usual : std::max(usual, shortest_length(s, dt));
-    plan.postponed = std::log2(length / usual);
+    const double begun = plan.placed ? usual : std::max(usual, shortest_length(s, dt));
+    const double length = begun / std::exp2(attempt.doublings);
+    plan.refinement -= std::log2(length / usual);
     plan.substeps =
         static_cast<int>(std::clamp<double>(std::ceil(dt / length), 1, most_substeps(budget)));
     plan.dt_substep = dt / plan.substeps;
@@ -180,6 +188,7 @@ FramePlan plan_of_step(State& s, const Attempt& attempt, double dt, const Budget
     const double part = 2 * plan.dt_substep / length;
     if (part < 1) plan.omega *= part * part;
   }
+  plan.may_be_finer = !attempt.is_last && !takes_over && can_be_finer(plan.substeps, budget);
   if (attempt.in_vain)
     plan.passes = std::min<double>(plan.passes, tuning::kPassesBeyond * plan.substeps);
   return plan;

@@ -130,11 +130,26 @@ bool is_in_vain(const State& s, double dt) {
 
 void add(Plan& plan, const Attempt& attempt) { plan.attempts[plan.count++] = attempt; }
 
+/// Where cloth was put somewhere nobody knows whether it pulls (keep_length, frame_plan.cpp).
+void list_small_steps(const State& s, bool in_vain, Plan& plan) {
+  const Settings& settings = s.settings;
+  const bool chooses = settings.substeps == kAutomaticSubsteps && settings.iterations == 0;
+  const bool goes_on = !s.placed && !s.displaced && !in_vain;
+  const int most = chooses && goes_on && s.model->has_laws() ? tuning::kMostDoublings : 0;
+  for (int i = 0; i <= most; ++i) {
+    add(plan, {.method = Method::by_small_steps,
+               .scheme = settings.scheme,
+               .doublings = i,
+               .saves = false,
+               .in_vain = in_vain});
+  }
+}
+
 void list_attempts(const State& s, double dt, Plan& plan) {
   const Settings& settings = s.settings;
   const bool in_vain = is_in_vain(s, dt);
   if (settings.solver == Solver::small_steps) {
-    add(plan, {.method = Method::by_small_steps, .scheme = settings.scheme, .in_vain = in_vain});
+    list_small_steps(s, in_vain, plan);
   } else {
     const bool fixed = settings.iterations > 0;
     if (settings.scheme == Scheme::rattle) add(plan, {.scheme = Scheme::rattle});
@@ -148,7 +163,9 @@ void list_attempts(const State& s, double dt, Plan& plan) {
       add(plan, {.method = Method::by_sweeps});
     }
   }
-  plan.attempts[plan.count - 1].is_last = true;
+  Attempt& last = plan.attempts[plan.count - 1];
+  last.is_last = true;
+  last.saves = false;
 }
 
 }  // namespace

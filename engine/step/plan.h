@@ -17,7 +17,9 @@
 ///
 /// The paper's loop (gauss_seidel) and a fixed number of iterations have one attempt, by the scheme
 /// of the settings, and after rattle a second one by the paper's. A step by small steps is one
-/// attempt. Its work is bounded where pins are too far apart: no frame takes long in vain.
+/// attempt. Its work is bounded where pins are too far apart: no frame takes long in vain. Where
+/// substeps of fabric are automatic a frame is tried in as many substeps as the last frames needed,
+/// and in 2, 4, 8 and 16 times as many: a load that arrives within it is not known beforehand.
 #pragma once
 
 #include <array>

@@ -108,6 +108,18 @@ class Frame {
     return status;
   }
 
+  /// Whether the last substep has left more than one of half its length would: an error falls with
+  /// the square of the length.
+  bool leaves_too_much() const {
+    constexpr double kLeftByTwiceTheLength = 4;  // tolerances
+    return plan_.may_be_finer && left_ > kLeftByTwiceTheLength;
+  }
+  /// No number of substeps brings such cloth out.
+  bool crosses_body() {
+    solver_.report_bodies(s_.body_report);
+    return s_.body_report.failures.left > 0;
+  }
+
   /// Where a substep from rest leads that nothing is asked of beyond its sweep.
   void look_ahead() {
     solver_.advance(team_);
@@ -212,6 +224,7 @@ class Frame {
       left_ = std::max(left_, error);
       if (is_within) return Status::converged;
       if (s_.settings.iterations > 0) return Status::fixed_iterations;
+      if (leaves_too_much() && !crosses_body()) return Status::iteration_limit;
       if (round >= tuning::kMostRounds || passes_.left() < 1) return Status::iteration_limit;
       if (stall.has_stalled(error)) return Status::infeasible;
       put_right();
@@ -334,6 +347,13 @@ Remains end_frame(State& s, Frame& frame, const FramePlan& plan, double dt_frame
   return remains;
 }
 
+/// Where a load has arrived within the frame, substeps are doubled until it converges.
+bool is_rejected(const Attempt& attempt, const FramePlan& plan, bool misses, Frame& frame) {
+  if (!plan.may_be_finer) return misses && attempt.saves;
+  const bool is_again = attempt.doublings > 0;
+  return (frame.leaves_too_much() || (is_again && misses)) && !frame.crosses_body();
+}
+
 }  // namespace
 
 Trial small_step(State& s, const Attempt& attempt, double dt_frame, const Budget& budget,
@@ -353,12 +373,13 @@ Trial small_step(State& s, const Attempt& attempt, double dt_frame, const Budget
     is_in_body = frame.is_in_body();
   });
   trial.substeps = plan.substeps;
-  report.max_bending_error = std::max(report.max_bending_error, s.small_steps->bending_error());
-  if (s.model->has_laws()) report.law_error = std::max(report.law_error, frame.law_error());
-  if (trial.status != Status::converged && !attempt.is_last) {
+  const bool misses = trial.status != Status::converged || is_in_body;
+  if (is_rejected(attempt, plan, misses, frame)) {
     trial.outcome = Outcome::rejected;
     return trial;
   }
+  report.max_bending_error = std::max(report.max_bending_error, s.small_steps->bending_error());
+  if (s.model->has_laws()) report.law_error = std::max(report.law_error, frame.law_error());
   kernels::ImpulseEnergy change;
   timed(report, Stage::commit, [&] {
     frame.read_velocities();

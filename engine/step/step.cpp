@@ -169,7 +169,7 @@ class OneStep {
   }
 
   Outcome try_attempt(const Attempt& attempt, double dt_substep) {
-    if (!attempt.is_last && report_.iterations >= positions_.early_end) return Outcome::rejected;
+    if (attempt.saves && report_.iterations >= positions_.early_end) return Outcome::rejected;
     const Budget budget{positions_.left(attempt, report_.iterations),
                         velocities_.left(attempt, report_.velocity_iterations)};
     bool is_predicted = std::exchange(plan_.is_predicted, false) && attempt.parts == 1;
@@ -242,13 +242,13 @@ class OneStep {
     if (trial.passed_particle != kNoIndex) report_.passed_particle = trial.passed_particle;
   }
 
-  /// The work of a substep, up to numbers of the report: all of it, and half of it, but for the
-  /// attempt that nothing is tried after.
+  /// The work of a substep, up to numbers of the report: all of it, and half of it for attempts
+  /// that save the rest.
   struct Share {
     std::int64_t end = 0, early_end = 0;
     int left(const Attempt& attempt, std::int64_t done) const {
       const std::int64_t least = attempt.method == Method::by_small_steps ? 0 : 1;
-      return static_cast<int>(std::max(least, (attempt.is_last ? end : early_end) - done));
+      return static_cast<int>(std::max(least, (attempt.saves ? early_end : end) - done));
     }
   };
   /// Half of the iterations that the step has left are for each substep, and all for the last.

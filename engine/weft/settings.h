@@ -54,7 +54,7 @@ namespace weft {
 ///   particle are solved as one system, at any tolerance and for masses that differ by a hundred
 ///   thousand. In other cloth masses should not differ by more than a hundred. Keep the length of
 ///   substeps constant: a change by half costs some energy. Only small_steps solves triangles of
-///   fabric, bending, anchors, seams and bodies.
+///   fabric, bending, anchors, seams and bodies. A frame of fabric that misses by far is repeated.
 /// yarn: splits the cloth into yarns, chains of constraints that run straight on through it, as
 ///   the yarns of a woven cloth do. Each yarn is solved exactly, many side by side in SIMD lanes.
 ///   If sweeps over the yarns converge slowly, conjugate gradients solve all of them as one system.

@@ -31,8 +31,9 @@ struct FramePlan {
   bool bodies_move = false;          // in this step, or in the last, or there are other ones
   bool bodies_are_new = false;       // there are other ones, or one was put elsewhere
 
-  double postponed = 0;  // log2: substeps are to be so much shorter, in later frames
-  bool goes_on = false;  // a projection from where the last one ended, in the same step
+  double refinement = 0;      // log2: substeps are so much shorter than is known beforehand
+  bool may_be_finer = false;  // another attempt may follow, with twice as many substeps
+  bool goes_on = false;       // a projection from where the last one ended, in the same step
 
   bool projects() const { return softest.has_value(); }
   ContactStart contact_start() const {

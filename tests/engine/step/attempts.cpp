@@ -26,6 +26,7 @@ std::string text(const Attempt& attempt) {
   std::string text = kMethodNames[static_cast<std::size_t>(attempt.method)];
   if (attempt.scheme == Scheme::rattle) text = "rattle";
   if (attempt.parts > 1) text += " / " + std::to_string(attempt.parts);
+  if (attempt.doublings > 0) text += " x " + std::to_string(1 << attempt.doublings);
   return attempt.is_last ? text + '.' : text + ", ";
 }
 
@@ -74,6 +75,24 @@ TEST_CASE("the list of attempts") {
     CHECK(list({.iterations = 3, .solver = Solver::yarn}) == "solver.");
     CHECK(list({.iterations = 3, .solver = Solver::direct, .scheme = Scheme::rattle}) == "rattle.");
     CHECK(list({.iterations = 3, .solver = Solver::small_steps}) == "small_steps.");
+  }
+  SUBCASE("has more and more substeps where those of fabric are automatic") {
+    const SceneDescription fabric = scene_of("drape", 5);
+    const Settings small_steps{.solver = Solver::small_steps};
+    const auto list_of_next = [&](const Settings& settings, bool displaced = false) {
+      State s = state_of(fabric, settings);
+      s.placed = false;
+      s.displaced = displaced;
+      return list_of(s);
+    };
+    CHECK(list_of_next(small_steps) ==
+          "small_steps, small_steps x 2, small_steps x 4, small_steps x 8, small_steps x 16.");
+    CHECK(list_of_next({.motion_tolerance = 0.1, .solver = Solver::small_steps}) ==
+          list_of_next(small_steps));
+    CHECK(list_of_next({.substeps = 10, .solver = Solver::small_steps}) == "small_steps.");
+    CHECK(list_of_next({.iterations = 1, .solver = Solver::small_steps}) == "small_steps.");
+    CHECK(list_of_next(small_steps, true) == "small_steps.");
+    CHECK(list_of(fabric, small_steps) == "small_steps.");
   }
   SUBCASE("has the direct solver where masses are unequal") {
     SceneDescription chain = scene_of("chain", 20);
