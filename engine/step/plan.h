@@ -16,10 +16,10 @@
 /// Where pins are farther apart than the constraints between them reach, small steps are left out.
 ///
 /// The paper's loop (gauss_seidel) and a fixed number of iterations have one attempt, by the scheme
-/// of the settings, and after rattle a second one by the paper's. A step by small steps is one
-/// attempt. Its work is bounded where pins are too far apart: no frame takes long in vain. Where
-/// substeps of fabric are automatic a frame is tried in as many substeps as the last frames needed,
-/// and in 2, 4, 8 and 16 times as many: a load that arrives within it is not known beforehand.
+/// of the settings, and after rattle a second one by the paper's. So has a step by small
+/// steps, whose work is bounded where pins are too far apart: no frame takes long in vain.
+/// Automatic substeps of fabric have more: as many substeps as the last frames needed, and 2, 4, 8
+/// and 16 times as many, since a load that arrives within a frame is not known beforehand.
 #pragma once
 
 #include <array>
