@@ -265,6 +265,14 @@ inline constexpr double kManyOut = 0.02;
 /// (perf/tried.md).
 inline constexpr double kMuchMended = 0.5;
 inline constexpr double kLittleMended = 0.04;
+/// In tolerances. A frame is done again in more substeps where its last sweep has left a law more
+/// than the first, or more than the second after corrections that took more than this share of the
+/// time of all sweeps. At 12 in place of 8 a ball falls through a sheet, 6 costs a flag of silk
+/// 1.46 times the time; at a share of 0.5 a ball on stiff cloth rises by 13 cm too high
+/// (perf/tried.md).
+inline constexpr double kMostLeft = 8;
+inline constexpr double kMostLeftUnderLoad = 3;
+inline constexpr double kLoadedShare = 0.25;
 /// In tolerances: where the error of longer substeps was predicted to be less, and they had to
 /// become shorter, longer ones are not blamed. At 0 a patch on a pinned sheet remains in 5 substeps
 /// at 240 Hz, now in 3; at 0.5 it changes back and forth for three seconds at 60 Hz

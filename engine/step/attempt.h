@@ -37,7 +37,8 @@ struct Attempt {
 /// A part is rejected if its solver gives up or uses up its iterations, if its velocities do not
 /// converge (rattle), or if it gains energy (energy.h). Yarns aim at tuning::kYarnGoal: a part
 /// that misses that is rejected too, unless it is the shortest. Small steps of fabric are
-/// rejected where they leave more than four tolerances, and then until they converge.
+/// rejected where a load arrives for which they are too long (tuning::kMostLeft), and then until
+/// they converge.
 enum class Outcome : std::uint8_t { accepted, rejected, not_finite };
 
 /// The outcome of an attempt.

@@ -130,12 +130,12 @@ bool is_in_vain(const State& s, double dt) {
 
 void add(Plan& plan, const Attempt& attempt) { plan.attempts[plan.count++] = attempt; }
 
-/// Where cloth was put somewhere nobody knows whether it pulls (keep_length, frame_plan.cpp).
+/// Nobody knows whether cloth at a pin that was put down pulls (keep_length, frame_plan.cpp).
 void list_small_steps(const State& s, bool in_vain, Plan& plan) {
   const Settings& settings = s.settings;
   const bool chooses = settings.substeps == kAutomaticSubsteps && settings.iterations == 0;
-  const bool goes_on = !s.placed && !s.displaced && !in_vain;
-  const int most = chooses && goes_on && s.model->has_laws() ? tuning::kMostDoublings : 0;
+  const bool can_tell = (s.placed || !s.displaced) && !in_vain;
+  const int most = chooses && can_tell && s.model->has_laws() ? tuning::kMostDoublings : 0;
   for (int i = 0; i <= most; ++i) {
     add(plan, {.method = Method::by_small_steps,
                .scheme = settings.scheme,

@@ -108,11 +108,12 @@ class Frame {
     return status;
   }
 
-  /// Whether the last substep has left more than one of half its length would: an error falls with
-  /// the square of the length.
+  /// Whether a load has arrived for which these substeps are too long: their last sweep has left a
+  /// law more than corrections may bring down.
   bool leaves_too_much() const {
-    constexpr double kLeftByTwiceTheLength = 4;  // tolerances
-    return plan_.may_be_finer && left_ > kLeftByTwiceTheLength;
+    const bool took_long = passes_.taken() > tuning::kLoadedShare * plan_.substeps;
+    const double most = took_long ? tuning::kMostLeftUnderLoad : tuning::kMostLeft;
+    return plan_.may_be_finer && law_error_ > most * s_.settings.tolerance;
   }
   /// No number of substeps brings such cloth out.
   bool crosses_body() {
