@@ -37,8 +37,9 @@ struct Attempt {
 /// A part is rejected if its solver gives up or uses up its iterations, if its velocities do not
 /// converge (rattle), or if it gains energy (energy.h). Yarns aim at tuning::kYarnGoal: a part
 /// that misses that is rejected too, unless it is the shortest. Small steps of fabric are
-/// rejected where a load arrives for which they are too long (tuning::kMostLeft), and then until
-/// they converge.
+/// rejected where they are too long for a load that arrives (tuning::kMostLeft) or for the motion
+/// tolerance, and then until they converge. Those of rigid lengths are not: where cloth snaps taut
+/// the error of motion need not fall.
 enum class Outcome : std::uint8_t { accepted, rejected, not_finite };
 
 /// The outcome of an attempt.

@@ -119,9 +119,8 @@ double refinement_for_motion(const State& s, const FramePlan& plan, double error
                              const Budget& budget) {
   constexpr double kLevel = 0.5;
   const double asked = s.settings.motion_tolerance;
-  const bool can_fall =
-      plan.refinement >= s.refinement && plan.substeps < most_substeps(budget) &&
-      error > tuning::kOverRounding * s.small_steps->rounding_error(plan.dt_substep);
+  const bool can_fall = plan.refinement >= s.refinement && plan.substeps < most_substeps(budget) &&
+                        motion_error_can_fall(s, plan, error);
   if (error > asked && can_fall) return plan.refinement + kLevel;
   const bool is_small = error < tuning::kMotionSpare * asked;
   const double reached = std::max(s.refinement, plan.refinement);
@@ -147,6 +146,14 @@ double refinement_for_laws(const State& s, const FramePlan& plan, const FrameCou
 }
 
 }  // namespace
+
+bool exceeds_motion_tolerance(const State& s, double error) {
+  return s.settings.motion_tolerance > 0 && error > s.settings.motion_tolerance;
+}
+
+bool motion_error_can_fall(const State& s, const FramePlan& plan, double error) {
+  return error > tuning::kOverRounding * s.small_steps->rounding_error(plan.dt_substep);
+}
 
 bool refines_substeps(const State& s) {
   if (s.settings.motion_tolerance > 0) return true;

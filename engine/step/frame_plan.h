@@ -12,6 +12,11 @@ inline bool takes_over_in(const State& s) { return s.settings.solver != Solver::
 /// Whether State::refinement says how much shorter substeps are than is known beforehand.
 bool refines_substeps(const State& s);
 
+/// error: of motion, m/s.
+bool exceeds_motion_tolerance(const State& s, double error);
+/// Whether shorter substeps would make it smaller: it is not of rounding.
+bool motion_error_can_fall(const State& s, const FramePlan& plan, double error);
+
 /// Substeps are about as long as the load allows. A step that is far shorter than the load allows
 /// is no stiffer. Work in vain is bounded as where a number of substeps was given. This writes over
 /// solved and, with free spheres, contacts.

@@ -115,6 +115,12 @@ class Frame {
     const double most = took_long ? tuning::kMostLeftUnderLoad : tuning::kMostLeft;
     return plan_.may_be_finer && law_error_ > most * s_.settings.tolerance;
   }
+  /// Whether shorter substeps would bring the motion nearer to what is asked, once velocities were
+  /// read.
+  bool departs_too_much() const {
+    const double error = solver_.motion_error();
+    return exceeds_motion_tolerance(s_, error) && motion_error_can_fall(s_, plan_, error);
+  }
   /// No number of substeps brings such cloth out.
   bool crosses_body() {
     solver_.report_bodies(s_.body_report);
@@ -338,7 +344,6 @@ Remains end_frame(State& s, Frame& frame, const FramePlan& plan, double dt_frame
   s.body_report.work += s.small_steps->free_bodies().slowed();
   if (pins_move(s)) trial.pin_work = work_of(motion_of_pins(s, dt_frame), s, dt_frame);
   trial.energy_lost = trial.pin_work + released + frame.released_by_bending() - 0.5 * change.gain;
-  if (!takes_over_in(s)) trial.motion_error = s.small_steps->motion_error();
   if (refines_substeps(s)) {
     trial.lengthening = s.lengthening;
     trial.refinement = next_refinement(s, plan, frame.course(), budget, trial.lengthening);
@@ -348,11 +353,12 @@ Remains end_frame(State& s, Frame& frame, const FramePlan& plan, double dt_frame
   return remains;
 }
 
-/// Where a load has arrived within the frame, substeps are doubled until it converges.
+/// Where a load or a motion has arrived within the frame, substeps are doubled until it converges.
 bool is_rejected(const Attempt& attempt, const FramePlan& plan, bool misses, Frame& frame) {
   if (!plan.may_be_finer) return misses && attempt.saves;
   const bool is_again = attempt.doublings > 0;
-  return (frame.leaves_too_much() || (is_again && misses)) && !frame.crosses_body();
+  const bool is_too_long = frame.leaves_too_much() || frame.departs_too_much();
+  return (is_too_long || (is_again && misses)) && !frame.crosses_body();
 }
 
 }  // namespace
@@ -374,18 +380,17 @@ Trial small_step(State& s, const Attempt& attempt, double dt_frame, const Budget
     is_in_body = frame.is_in_body();
   });
   trial.substeps = plan.substeps;
+  timed(report, Stage::commit, [&] { frame.read_velocities(); });
   const bool misses = trial.status != Status::converged || is_in_body;
   if (is_rejected(attempt, plan, misses, frame)) {
     trial.outcome = Outcome::rejected;
     return trial;
   }
+  if (!takes_over_in(s)) trial.motion_error = s.small_steps->motion_error();
   report.max_bending_error = std::max(report.max_bending_error, s.small_steps->bending_error());
   if (s.model->has_laws()) report.law_error = std::max(report.law_error, frame.law_error());
   kernels::ImpulseEnergy change;
-  timed(report, Stage::commit, [&] {
-    frame.read_velocities();
-    s.small_steps->report_bodies(s.body_report);
-  });
+  timed(report, Stage::commit, [&] { s.small_steps->report_bodies(s.body_report); });
   if (s.settings.velocity_correction) {
     timed(report, Stage::correct_velocities,
           [&] { trial.worsen(correct_velocities(s, *s.sweeps, false, budget, report, team)); });
@@ -402,8 +407,9 @@ Trial small_step(State& s, const Attempt& attempt, double dt_frame, const Budget
   }
   if (fixed)
     trial.worsen(Status::fixed_iterations);
-  else if (is_in_body || s.body_report.failures.left > 0 ||
-           s.body_report.failures.is_tangled_anew || leaves_bending(s) || report.late_seams > 0)
+  else if (is_in_body || exceeds_motion_tolerance(s, trial.motion_error) ||
+           s.body_report.failures.left > 0 || s.body_report.failures.is_tangled_anew ||
+           leaves_bending(s) || report.late_seams > 0)
     trial.worsen(Status::iteration_limit);
   if (frame.passed_particle() != kNoIndex) {
     trial.passed_particle = frame.passed_particle();

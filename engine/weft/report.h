@@ -19,14 +19,15 @@
 namespace weft {
 
 /// converged: every constraint is within its tolerance, and so is bending; nothing crosses a
-///   body or is inside one; no seam is late (StepReport::late_seams). The state is committed.
+///   body or is inside one; no seam is late (StepReport::late_seams); the error of motion is within
+///   Settings::motion_tolerance, if there is one. The state is committed.
 ///   Cloth at rest may be off its laws of tension all the same (StepReport::law_error).
 /// fixed_iterations: Settings::iterations were done; the report has the error. The state is
 ///   committed.
 /// iteration_limit: a constraint is still out of tolerance after max_iterations (with small_steps:
 ///   after all rounds, or all work that a given number of substeps allows), or bending is out of
 ///   tolerance (StepReport::max_bending_error), or something crosses a body or is inside one, or a
-///   seam is late. The state is committed.
+///   seam is late, or motion_error exceeds Settings::motion_tolerance. The state is committed.
 /// infeasible: a constraint is out of tolerance, and tens of thousands of iterations (small_steps:
 ///   sixteen rounds of a sweep and local passes) hardly reduce the error. There are four causes:
 ///   constraints contradict each other (a chain whose ends are too far apart); two held particles

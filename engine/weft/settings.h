@@ -155,10 +155,11 @@ struct Settings {
   double contact_tolerance = 1e-4;
   double velocity_tolerance = 0.01;  ///< Advanced. m/s along a constraint, > 0
   /// Everyday. m/s, the allowed error of motion of a particle; 0: off. weft uses more substeps (up
-  /// to 1024) until the error is small enough, as far as rounding allows; StepReport::motion_error
-  /// reports the error. The estimate leaves out contacts and chaos. Only small_steps has it, and
-  /// automatic then chooses small_steps at any tolerance. It is refused with `substeps`,
-  /// `iterations` or velocity_correction.
+  /// to 1024) until the error is small enough, as far as rounding allows: of fabric in the same
+  /// step, of other cloth in the next ones. A step whose StepReport::motion_error exceeds it has
+  /// not converged. The estimate leaves out contacts, chaos, and what `tolerance` allows a fabric.
+  /// Only small_steps has it, and automatic then chooses small_steps at any tolerance. It is
+  /// refused with `substeps`, `iterations` or velocity_correction.
   double motion_tolerance = 0;
   Solver solver = Solver::automatic;  ///< Advanced.
   Scheme scheme = Scheme::automatic;  ///< Advanced.

@@ -81,10 +81,13 @@ TEST_CASE("lanes estimate what the reference in double does") {
   }
 }
 
+/// Where cloth snaps taut the estimate need not fall, and the status says so.
 std::vector<Vec3> after(Cloth cloth, double seconds, std::int64_t& substeps) {
+  const double asked = cloth.settings().motion_tolerance;
   for (int frame = 0; frame < std::lround(seconds / kFrame); ++frame) {
     const StepReport report = step(cloth, kFrame);
-    REQUIRE(report.status == Status::converged);
+    const bool is_held = asked == 0 || report.motion_error <= asked;
+    REQUIRE(report.status == (is_held ? Status::converged : Status::iteration_limit));
     substeps += report.substeps;
   }
   return positions(cloth);
@@ -115,17 +118,46 @@ TEST_CASE("the distance from the true motion is what was asked for, within a fac
   }
 }
 
-TEST_CASE("what is asked for stays within bounds where it cannot be held, and the report tells") {
+TEST_CASE(
+    "a frame of fabric in which motion sets in holds what is asked for, or says that it does not") {
+  for (const char* name : {"drape", "flag"}) {
+    for (const char* material : {"cotton", "silk"}) {
+      const SceneDescription scene =
+          scenes::make(name, {.size = 13, .material = find_material(material).value()}).value();
+      for (const int rate : {30, 60, 240}) {
+        CAPTURE(std::string(name));
+        CAPTURE(std::string(material));
+        CAPTURE(rate);
+        const double asked = 0.02;
+        Cloth cloth = cloth_of(scene, small_steps(asked));
+        int repeated = 0, missed = 0;
+        for (int frame = 0; frame < rate; ++frame) {
+          const StepReport report = step(cloth, 1. / rate);
+          const bool is_held = report.motion_error <= asked;
+          REQUIRE(report.status == (is_held ? Status::converged : Status::iteration_limit));
+          repeated += report.halvings > 0 ? 1 : 0;
+          missed += is_held ? 0 : 1;
+        }
+        CHECK(missed <= 1);
+        CHECK(repeated > 0);
+        CHECK(repeated < 25);
+      }
+    }
+  }
+}
+
+TEST_CASE("what is asked for stays within bounds where it cannot be held, and the status tells") {
   const double asked = 1e-5;  // near what floats carry
   Cloth cloth = cloth_of(scene_of("hang", 20), small_steps(asked));
-  double largest = 0;
+  int missed = 0;
   for (int frame = 0; frame < 100; ++frame) {
     const StepReport report = step(cloth, kFrame);
-    REQUIRE(report.status == Status::converged);
+    const bool is_held = report.motion_error <= asked;
+    REQUIRE(report.status == (is_held ? Status::converged : Status::iteration_limit));
     CHECK(report.substeps < 512);
-    largest = std::max(largest, report.motion_error);
+    missed += is_held ? 0 : 1;
   }
-  CHECK(largest > 4 * asked);
+  CHECK(missed > 50);
 }
 
 TEST_CASE("a cloth at rest takes few substeps again") {
