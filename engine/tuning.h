@@ -499,10 +499,12 @@ inline constexpr double kWovenError = 0.03;
 /// The share of warp or weft that kWovenError is measured by at least. Without it cloth that has no
 /// shear would be yarns on exact rectangles alone.
 inline constexpr double kFeltShear = 0.01;
-/// Sliders of one rail move it under each other. They take turns, at most so many in a sweep, until
-/// all are within this share of contact_tolerance. More turns take longer.
-inline constexpr int kSliderTurns = 16;
-inline constexpr double kSliderShare = 0.25;
+/// Sliders of one rail move it under each other, and so do seams that share a particle. They take
+/// turns, at most so many in a sweep, until all are within this share of contact_tolerance. More
+/// turns take longer. In one turn layers that are sewn one to the next, and hang from the first,
+/// sink for ever; with a share of 0.25 their seams close up to 0.1 s too late (perf/tried.md).
+inline constexpr int kJointTurns = 16;
+inline constexpr double kJointShare = 0.01;
 /// A crack goes on away from where it comes from, if the direction across the tension leads there
 /// by this share. Else, as where the tension runs along it, both directions are as good.
 inline constexpr double kLeastOpening = 0.1;

@@ -216,13 +216,15 @@ void FreeBodies::hold(FreeContactHost& host) {
   }
 }
 
-/// The past of a particle has changed by so much: what the two have together stays.
+/// The past of a particle has changed by so much: what the two have together stays. The past of a
+/// body that is lighter would change by more than either moves: it takes as much as its own mass
+/// does.
 void FreeBodies::give_back(const FreeContact& contact, const ChangedPast& changed,
                            double share_of_past) {
   const auto& [x, faster, farther] = changed;
   Course& course = courses_[contact.body];
   const FreeBodyNow& now = now_[contact.body];
-  const double mass = model_.mass[contact.slot];
+  const double mass = std::min(model_.mass[contact.slot], bodies_[contact.body].mass.mass);
   const Vector r = x - now.centre;
   course.velocity_before = course.velocity_before - (mass * now.inverse_mass) * faster;
   course.momentum_before = course.momentum_before - cross(r, mass * faster);

@@ -14,7 +14,6 @@
 
 #include "engine/bytes_of.h"
 #include "engine/model/model.h"
-#include "engine/tuning.h"
 #include "kernels/reference/rails.h"
 
 namespace weft {
@@ -49,8 +48,7 @@ reference::RailPoint nearest_on_rail(const SliderStore& sliders, std::size_t sli
 
 class SliderThreads {
  public:
-  SliderThreads(const Model& model, double tolerance)
-      : model_(model), tolerance_(tolerance), impulses_(model.sliders.size()) {}
+  explicit SliderThreads(const Model& model) : model_(model), impulses_(model.sliders.size()) {}
 
   bool empty() const { return impulses_.empty(); }
   /// A frame. is_rough: friction counts, as it does while time passes.
@@ -59,16 +57,14 @@ class SliderThreads {
     is_rough_ = is_rough;
   }
 
-  /// The end of a sweep, or of local passes. is_first: nothing of the substep was swept before.
-  /// Sliders of one rail move it under each other, so they take turns until all are on it.
+  /// The end of a sweep, or of local passes: a turn. is_first: nothing of the substep was
+  /// swept before. Returns how far one was away from its rail at most, m.
   template <class Points>
-  void hold(const Points& points, bool is_first) {
+  double hold(const Points& points, bool is_first) {
     if (is_first) std::ranges::fill(impulses_, Impulse{});
-    for (int turn = 0; turn < tuning::kSliderTurns; ++turn) {
-      double most = 0;
-      for (std::size_t i = 0; i < impulses_.size(); ++i) most = std::max(most, hold_one(points, i));
-      if (most <= tuning::kSliderShare * tolerance_) return;
-    }
+    double most = 0;
+    for (std::size_t i = 0; i < impulses_.size(); ++i) most = std::max(most, hold_one(points, i));
+    return most;
   }
 
   std::span<const reference::RailPlace> places() const { return places_; }
@@ -153,7 +149,6 @@ class SliderThreads {
   }
 
   const Model& model_;
-  const double tolerance_;
   std::vector<Impulse> impulses_;
   std::vector<reference::RailPlace> places_;
   bool is_rough_ = false;

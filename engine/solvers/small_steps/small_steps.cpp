@@ -26,7 +26,7 @@ class StoredSmallSteps final : public SmallSteps {
         layout_(model.small_steps()),
         now_{model, settings},
         seams_(model),
-        sliders_(model, settings.contact_tolerance),
+        sliders_(model),
         creases_(model, layout_.bending.creases),
         free_(model),
         carried_(model),
@@ -249,8 +249,7 @@ class StoredSmallSteps final : public SmallSteps {
     store_.sweep_edges(by, team);
     store_.sweep_membrane(team);
     if (layout_.has_single_constraints() || !layout_.has_yarns()) store_.hold_anchors(team);
-    draw_seams();
-    hold_sliders();
+    hold_joints();
     hold_bodies(team);
     hold_free_bodies();
     now_.is_begun = true;
@@ -265,8 +264,7 @@ class StoredSmallSteps final : public SmallSteps {
         .most_visits = most_visits,
         .laws = now_.law_step()};
     LocalWork work = now_.passes.run(points, contacts, limits);
-    draw_seams();
-    hold_sliders();
+    hold_joints();
     hold_by_meshes(team);
     if (!free_.empty()) hold_free_bodies_between(points, contacts, limits, work);
     return work;
@@ -333,14 +331,18 @@ class StoredSmallSteps final : public SmallSteps {
     contact_times_.timed(&ContactMs::find, [&] { store_.bodies().find_standing(particles, team); });
     contact_times_.timed(&ContactMs::sweep, [&] { store_.hold_by_meshes(team); });
   }
-  void draw_seams() {
-    if (seams_.empty()) return;
-    Points points = store_.points(false);
+  /// Seams that share a particle, and sliders of one rail, move what the others hold. They take
+  /// turns until all hold: else cloth that hangs from a seam beside another one would sink.
+  void hold_joints() {
+    if (seams_.empty() && sliders_.empty()) return;
+    const Points points = store_.points(false);
     seams_.draw(points, time_of_seams(), !now_.is_begun);
-  }
-  void hold_sliders() {
-    if (sliders_.empty()) return;
-    sliders_.hold(store_.points(false), !now_.is_begun);
+    double most = sliders_.hold(points, !now_.is_begun);
+    for (int turn = 1; turn < tuning::kJointTurns; ++turn) {
+      const double of_seams = seams_.draw_joined(points, time_of_seams());
+      if (std::max(most, of_seams) <= tuning::kJointShare * now_.settings.contact_tolerance) return;
+      most = sliders_.hold(points, false);
+    }
   }
   double time_of_seams() const { return 1 / now_.law_step().springs.scale; }
 
